@@ -132,7 +132,7 @@ impl PointMass {
 
     /// The share of it in the fluid, and what it changes by with height [1/m].
     fn share(&self, at: &At<'_>, swell: Option<&Swell<f64>>) -> (f64, f64) {
-        let z = self.held.x(at)[2] - swell.map_or(0.0, |swell| swell.elevation);
+        let z = self.held.x(at)[2] - swell.map_or(0.0, |swell| swell.top.elevation);
         self.surface.map_or((1.0, 0.0), |s| ball_below(s.level, z, s.radius))
     }
 
@@ -152,7 +152,8 @@ impl PointMass {
     fn pushed(&self, at: &At<'_>, swell: Option<&Swell<f64>>) -> (V3<f64>, [V3<f64>; 3]) {
         let (Some(swell), Some((_, volume))) = (swell, &self.sea) else { return ([0.0; 3], [[0.0; 3]; 3]) };
         let mass = self.density * volume + self.added_mass;
-        let (a, by_x) = swell.along_path(&self.current, self.held.x(at)[2]);
+        let (a, mut by_x, by_z) = swell.along_path(&self.current, self.held.x(at)[2]);
+        (0..3).for_each(|i| by_x[i][2] += by_z[i]);
         (a.map(|a| mass * a), by_x.map(|row| row.map(|x| mass * x)))
     }
 }
@@ -211,7 +212,7 @@ impl Term for PointMass {
         let waves = |x: &V3<f64>| -> V3<f64> {
             let Some(swell) = &swell else { return [0.0; 3] };
             let drag = damping(&swell.by_x.map(|row| dot(&row, x)));
-            let risen = swell.slope[0] * x[0] + swell.slope[1] * x[1];
+            let risen = swell.top.slope[0] * x[0] + swell.top.slope[1] * x[1];
             std::array::from_fn(|i| -drag[i] - share * dot(&pushed_by[i], x) - met[i] * risen)
         };
         let by: [V3<f64>; MOST] = std::array::from_fn(|k| {

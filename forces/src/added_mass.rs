@@ -2,11 +2,13 @@
 
 use crate::all_round::AllRound;
 use crate::buoyancy::surface;
-use crate::drag::{add, free_tips, less_product, velocity};
-use crate::{BluntEnd, FeedingEnd, FroudeKrylov, Immersed, Surface, Wetted, at_tip};
+use crate::drag::{add, free_tips, velocity};
+use crate::wetted::add_in_waves;
+use crate::{BluntEnd, FeedingEnd, FroudeKrylov, Immersed, InWaves, Surface, Wetted, at_tip};
 use ropewalk_core::error::not_negative;
 use ropewalk_core::{BuildError, Gives, Law, Load, Part, Power, Real, Station, V3, dot, scaled};
 use ropewalk_scene::{Builder, Current, ForceSpec, Sea, Swell, quantity, register_spec};
+use ropewalk_sea::transposed_times;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -99,21 +101,22 @@ impl AddedMass {
 
     /// The answer to the acceleration relative to the water.
     #[inline(always)]
-    fn inertia<R: Real, const TANGENT: bool>(
+    fn inertia<R: Real, const TANGENT: bool, const D: usize>(
         &self,
         at: &Station<R>,
-        swell: Option<&Swell<R>>,
+        waves: Option<&mut InWaves<R, D>>,
         out: &mut Load<R>,
     ) {
         let mass = self.mass(at.diameter);
         let inverse = R::of(1.0) / dot(&at.slope, &at.slope).sqrt();
         let t = scaled(inverse, &at.slope);
         let mut a = at.a;
-        if let Some(swell) = swell {
+        if let Some(waves) = &waves {
+            let (swell, carried) = (&waves.swell, waves.swell.carried(&at.v));
             for i in 0..3 {
                 a[i] -= match self.theory {
                     Theory::Morison => swell.acceleration[i],
-                    Theory::Energy => swell.rate[i] + dot(&swell.gradient[i], &at.v),
+                    Theory::Energy => swell.rate[i] + carried[i],
                 };
             }
         }
@@ -133,28 +136,29 @@ impl AddedMass {
                     out.d_slope[i][j] += turn * axial.fma(p, t[i] * normal[j]);
                 }
             }
-            if let Some(swell) = swell {
-                add_across(&mut out.d_x, mass, &t, &swell.acceleration_by_x);
-                if self.theory == Theory::Energy {
-                    add_across(&mut out.d_v, mass, &t, &swell.gradient);
-                }
+            if let Some(waves) = waves {
+                // P times what the acceleration of the water changes by
+                let by_x = waves.swell.acceleration_by_x;
+                let along = transposed_times(&by_x, &waves.swell.axes.along(&t));
+                waves.add(mass, &by_x);
+                waves.add_outer(&scaled(-mass, &t), &along);
             }
         }
     }
 
     #[inline(always)]
-    fn flow<R: Real, const TANGENT: bool>(
+    fn flow<R: Real, const TANGENT: bool, const D: usize>(
         &self,
         at: &Station<R>,
-        swell: Option<&Swell<R>>,
+        waves: Option<&mut InWaves<R, D>>,
         out: &mut Load<R>,
     ) {
         let mass = self.mass(at.diameter);
         let inverse = R::of(1.0) / dot(&at.slope, &at.slope).sqrt();
         let t = scaled(inverse, &at.slope);
         let (mut u, du) = self.current.at(at.x[2]);
-        if let Some(swell) = swell {
-            add(&mut u, &swell.u);
+        if let Some(waves) = &waves {
+            add(&mut u, &waves.swell.u);
         }
         let mut w = at.v;
         for i in 0..3 {
@@ -173,10 +177,11 @@ impl AddedMass {
             out.g[i] -= per * along * n[i];
         }
         // what the gradient takes from the flow across
-        let taken = swell.map(|swell| transposed(mass, &swell.gradient));
-        if let Some(taken) = &taken {
+        if let Some(waves) = &waves {
+            let Swell { axes, gradient, .. } = &waves.swell;
+            let taken = axes.vector(&transposed_times(gradient, &axes.along(&n)));
             for i in 0..3 {
-                out.f[i] -= dot(&taken[i], &n);
+                out.f[i] -= mass * taken[i];
             }
         }
         if !TANGENT {
@@ -199,19 +204,22 @@ impl AddedMass {
                 out.g_slope[i][j] -= per * inverse * (normal - along * t[i].fma(n[j], n[i] * t[j]));
             }
         }
-        if let (Some(swell), Some(taken)) = (swell, &taken) {
-            let across = across(R::of(1.0), &t);
+        if let Some(waves) = waves {
+            let Swell { axes, gradient, .. } = waves.swell;
+            let (g, lean) = (axes.matrix(&gradient), transposed_times(&gradient, &axes.along(&t)));
+            let lean = axes.vector(&lean);
             for i in 0..3 {
-                let lean = dot(&taken[i], &t);
                 for j in 0..3 {
-                    out.d_slope[i][j] += inverse * along.fma(dot(&taken[i], &across[j]), lean * n[j]);
-                    by_w[i][j] -= dot(&taken[i], &across[j]);
-                    out.d_v[i][j] -= dot(&taken[i], &across[j]);
+                    // Gᵀ P, and beside it P G of the acceleration relative to the water
+                    let (taken, given) = (g[j][i] - lean[i] * t[j], g[i][j] - t[i] * lean[j]);
+                    out.d_slope[i][j] += per * along.fma(taken, lean[i] * n[j]);
+                    out.d_v[i][j] += mass * (given - taken);
+                    by_w[i][j] -= mass * taken;
                 }
             }
             // how the gradient itself changes is left out: iterations don't need it
-            less_product(&mut out.d_x, &by_w, &swell.by_x);
-            less_product(&mut out.g_x, &g_by_w, &swell.by_x);
+            waves.drift(&by_w);
+            waves.drift_couple(&g_by_w);
         }
         if !self.current.is_uniform() {
             // the current changes with height alone
@@ -247,41 +255,6 @@ struct Relative<R> {
     n: V3<R>,
 }
 
-/// Adds `factor (I - t tᵀ) m`.
-#[inline(always)]
-fn add_across<R: Real>(to: &mut [V3<R>; 3], factor: R, t: &V3<R>, m: &[V3<R>; 3]) {
-    for j in 0..3 {
-        let along = t[0].fma(m[0][j], t[1].fma(m[1][j], t[2] * m[2][j]));
-        for i in 0..3 {
-            to[i][j] = factor.fma(m[i][j] - t[i] * along, to[i][j]);
-        }
-    }
-}
-
-/// `factor (I - t tᵀ)`
-#[inline(always)]
-fn across<R: Real>(factor: R, t: &V3<R>) -> [V3<R>; 3] {
-    let mut p = [[R::zero(); 3]; 3];
-    for i in 0..3 {
-        for j in 0..3 {
-            let tt = t[i] * t[j];
-            p[i][j] = factor * if i == j { R::of(1.0) - tt } else { -tt };
-        }
-    }
-    p
-}
-
-#[inline(always)]
-fn transposed<R: Real>(factor: R, m: &[V3<R>; 3]) -> [V3<R>; 3] {
-    let mut out = *m;
-    for i in 0..3 {
-        for j in 0..3 {
-            out[i][j] = factor * m[j][i];
-        }
-    }
-    out
-}
-
 impl Law for AddedMass {
     const NEEDS_DIAMETER: bool = true;
     fn label(&self) -> String {
@@ -309,7 +282,7 @@ impl Law for AddedMass {
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
         let swell = self.sea.as_ref().map(|sea| sea.along(t, at));
-        self.load_in::<R, TANGENT>(at, swell.as_ref(), out);
+        add_in_waves::<R, TANGENT, 3>(self, at, swell.as_ref(), out);
     }
 
     #[inline(always)]
@@ -321,9 +294,10 @@ impl Law for AddedMass {
                 let (Relative { u, w, n }, (_, du)) = (self.relative(t, at), self.current.at(at.x[2]));
                 let mut met = at.v[2] * dot(&n, &du);
                 if let Some(sea) = &self.sea {
-                    let Swell { gradient, by_x, by_t, rate, .. } = sea.along(t, at);
+                    let swell = sea.along(t, at);
+                    let Swell { gradient, by_x, by_t, rate, .. } = swell;
+                    met += dot(&n, &swell.carried(&w));
                     for i in 0..3 {
-                        met += n[i] * dot(&gradient[i], &w);
                         // above the surface the water has the velocity that it has at the surface
                         met += n[i] * (dot(&by_x[i], &at.v) - dot(&gradient[i], &at.v) + by_t[i] - rate[i]);
                     }
@@ -352,15 +326,15 @@ impl Immersed for AddedMass {
         self.sea.as_ref()
     }
     #[inline(always)]
-    fn load_in<R: Real, const TANGENT: bool>(
+    fn load_in<R: Real, const TANGENT: bool, const D: usize>(
         &self,
         at: &Station<R>,
-        swell: Option<&Swell<R>>,
+        mut waves: Option<&mut InWaves<R, D>>,
         out: &mut Load<R>,
     ) {
-        self.inertia::<R, TANGENT>(at, swell, out);
+        self.inertia::<R, TANGENT, D>(at, waves.as_deref_mut(), out);
         if self.theory == Theory::Energy {
-            self.flow::<R, TANGENT>(at, swell, out);
+            self.flow::<R, TANGENT, D>(at, waves, out);
         }
     }
 }

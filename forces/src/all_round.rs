@@ -1,8 +1,10 @@
 //! Added mass that is the same in all directions.
 
-use crate::{AddedMass, Immersed, Theory};
+use crate::froude_krylov::carry;
+use crate::wetted::add_in_waves;
+use crate::{AddedMass, Immersed, InWaves, Theory};
 use ropewalk_core::{Gives, Law, Load, Real, Station};
-use ropewalk_scene::{Sea, Swell};
+use ropewalk_scene::Sea;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -54,7 +56,7 @@ impl Law for AllRound {
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
         let swell = self.sea.as_ref().map(|sea| sea.along(t, at));
-        self.load_in::<R, TANGENT>(at, swell.as_ref(), out);
+        add_in_waves::<R, TANGENT, 3>(self, at, swell.as_ref(), out);
     }
 }
 
@@ -64,10 +66,10 @@ impl Immersed for AllRound {
         self.sea.as_ref()
     }
     #[inline(always)]
-    fn load_in<R: Real, const TANGENT: bool>(
+    fn load_in<R: Real, const TANGENT: bool, const D: usize>(
         &self,
         at: &Station<R>,
-        swell: Option<&Swell<R>>,
+        waves: Option<&mut InWaves<R, D>>,
         out: &mut Load<R>,
     ) {
         let mass = R::of(self.coefficient * self.density * PI / 4.0) * at.diameter * at.diameter;
@@ -77,18 +79,8 @@ impl Immersed for AllRound {
                 out.d_a[i][i] -= mass;
             }
         }
-        let Some(swell) = swell else { return };
-        let (a, by_x) = match self.theory {
-            Theory::Energy => swell.along_path(&self.current, at.x[2]),
-            Theory::Morison => (swell.acceleration, swell.acceleration_by_x),
-        };
-        for i in 0..3 {
-            out.f[i] = mass.fma(a[i], out.f[i]);
-            if TANGENT {
-                for j in 0..3 {
-                    out.d_x[i][j] = mass.fma(by_x[i][j], out.d_x[i][j]);
-                }
-            }
+        if let Some(waves) = waves {
+            carry::<R, TANGENT, D>(mass, self.theory, &self.current, at, waves, out);
         }
     }
 }

@@ -9,7 +9,8 @@ use ropewalk_core::{
     Assembly, At, BuildError, Energy, Gives, Joined, Law, Load, Pattern, Per, Power, Real, Station, Term,
     Timed, V3,
 };
-use ropewalk_scene::{Builder, ForceSpec, Swell, register_spec};
+use ropewalk_scene::{Builder, ForceSpec, register_spec};
+use ropewalk_sea::Top;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
@@ -32,13 +33,13 @@ pub struct Buoyancy {
 }
 
 impl Buoyancy {
-    /// The load of a station that lies so in the water, with these waves.
+    /// The load of a station that lies so in the water, whose surface stands so in waves.
     #[inline(always)]
     pub(crate) fn lift<R: Real, const TANGENT: bool>(
         &self,
         at: &Station<R>,
         wet: &Wet<R>,
-        swell: Option<&Swell<R>>,
+        top: Option<&Top<R>>,
         out: &mut Load<R>,
     ) {
         let k = R::of(self.specific_weight) * at.area;
@@ -63,9 +64,9 @@ impl Buoyancy {
                 }
             }
         }
-        let Some(swell) = swell else { return };
+        let Some(top) = top else { return };
         for j in 0..2 {
-            let by_x = k * swell.slope[j];
+            let by_x = k * top.slope[j];
             out.d_x[2][j] -= by_x * wet.lift_by_z;
             if self.couple {
                 for i in 0..3 {
@@ -91,25 +92,25 @@ impl Law for Buoyancy {
     }
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
-        let swell = self.surface.swell(t, at);
-        let wet = self.surface.wet(at, swell.as_ref());
-        self.lift::<R, TANGENT>(at, &wet, swell.as_ref(), out);
+        let top = self.surface.top(t, at);
+        let wet = self.surface.wet(at, top.as_ref());
+        self.lift::<R, TANGENT>(at, &wet, top.as_ref(), out);
     }
     #[inline(always)]
     fn power<R: Real>(&self, t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {
-        let supplied = match self.surface.swell(t, at) {
+        let supplied = match self.surface.top(t, at) {
             _ if !self.couple => load.f[2] * at.v[2],
             None => R::zero(),
             // what lies deeper under a surface that has risen has more potential energy
-            Some(swell) => load.f[2] * swell.rise(&at.v),
+            Some(top) => load.f[2] * top.rise(&at.v),
         };
         Power { supplied, ..Power::zero() }
     }
     #[inline(always)]
     fn potential<R: Real>(&self, t: f64, at: &Station<R>) -> R {
         if self.couple {
-            let swell = self.surface.swell(t, at);
-            R::of(self.specific_weight) * at.area * self.surface.wet(at, swell.as_ref()).depth
+            let top = self.surface.top(t, at);
+            R::of(self.specific_weight) * at.area * self.surface.wet(at, top.as_ref()).depth
         } else {
             R::zero()
         }
@@ -174,9 +175,9 @@ impl Float {
     fn share(&self, at: &At<'_>) -> (f64, f64) {
         self.surface.ball(at.t, &self.held.x(at), ball_radius(self.volume))
     }
-    /// The waves around it.
-    fn swell(&self, at: &At<'_>) -> Option<Swell<f64>> {
-        self.surface.swell_at(at.t, &self.held.x(at))
+    /// How the surface stands in waves above it.
+    fn top(&self, at: &At<'_>) -> Option<Top<f64>> {
+        self.surface.top_at(at.t, &self.held.x(at))
     }
 }
 
@@ -197,15 +198,14 @@ impl Term for Float {
         let (lift, (share, by_z)) = (self.specific_weight * self.volume, self.share(at));
         let mut force = Pull { f: [0.0, 0.0, lift * share], ..Pull::default() };
         force.by_x[2][2] = lift * by_z;
-        if let Some(swell) = self.swell(at) {
-            (force.by_x[2][0], force.by_x[2][1]) =
-                (-lift * by_z * swell.slope[0], -lift * by_z * swell.slope[1]);
+        if let Some(top) = self.top(at) {
+            (force.by_x[2][0], force.by_x[2][1]) = (-lift * by_z * top.slope[0], -lift * by_z * top.slope[1]);
         }
         pull(&[Held::Ground([0.0; 3]), self.held], at, &force, 0, out);
     }
     fn energy(&self, at: &At<'_>) -> Energy {
         let r = ball_radius(self.volume);
-        let risen = self.swell(at).map_or(0.0, |swell| swell.elevation);
+        let risen = self.top(at).map_or(0.0, |top| top.elevation);
         let s = self.surface.level + risen - self.held.x(at)[2];
         let u = (s / r).clamp(-1.0, 1.0);
         // ∫ (½ + ¾ u - ¼ u³) du, from where the ball is dry; below the surface it grows by the depth
@@ -214,7 +214,7 @@ impl Term for Float {
     }
     fn power(&self, at: &At<'_>) -> Power {
         let lift = self.specific_weight * self.volume * self.share(at).0;
-        let rise = self.swell(at).map_or(0.0, |swell| swell.rise(&self.held.velocity(at)));
+        let rise = self.top(at).map_or(0.0, |top| top.rise(&self.held.velocity(at)));
         Power { supplied: lift * rise, ..Power::default() }
     }
     fn timed(&self) -> Option<&dyn Timed> {

@@ -1,8 +1,9 @@
 //! The pressure of waves on what is in them.
 
-use crate::{Immersed, Theory};
+use crate::wetted::add_in_waves;
+use crate::{Immersed, InWaves, Theory};
 use ropewalk_core::{Gives, Law, Load, Real, Station};
-use ropewalk_scene::{Current, Sea, Swell};
+use ropewalk_scene::{Current, Sea};
 use std::sync::Arc;
 
 /// Force of the pressure that waves have without the body: `ρ A u̇` per unstretched length, in all directions, with the
@@ -38,8 +39,7 @@ impl Law for FroudeKrylov {
     }
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
-        let swell = self.sea.along(t, at);
-        self.load_in::<R, TANGENT>(at, Some(&swell), out);
+        add_in_waves::<R, TANGENT, 3>(self, at, Some(&self.sea.along(t, at)), out);
     }
 }
 
@@ -49,24 +49,41 @@ impl Immersed for FroudeKrylov {
         Some(&self.sea)
     }
     #[inline(always)]
-    fn load_in<R: Real, const TANGENT: bool>(
+    fn load_in<R: Real, const TANGENT: bool, const D: usize>(
         &self,
         at: &Station<R>,
-        swell: Option<&Swell<R>>,
+        waves: Option<&mut InWaves<R, D>>,
         out: &mut Load<R>,
     ) {
-        let Some(swell) = swell else { return };
-        let mass = R::of(self.density) * at.area;
-        let (a, by_x) = match self.theory {
-            Theory::Energy => swell.along_path(&self.current, at.x[2]),
-            Theory::Morison => (swell.acceleration, swell.acceleration_by_x),
-        };
-        for i in 0..3 {
-            out.f[i] = mass.fma(a[i], out.f[i]);
-            if TANGENT {
-                for j in 0..3 {
-                    out.d_x[i][j] = mass.fma(by_x[i][j], out.d_x[i][j]);
-                }
+        if let Some(waves) = waves {
+            carry::<R, TANGENT, D>(R::of(self.density) * at.area, self.theory, &self.current, at, waves, out);
+        }
+    }
+}
+
+/// Adds the force that gives a mass [kg/m] the acceleration of the water.
+#[inline(always)]
+pub(crate) fn carry<R: Real, const TANGENT: bool, const D: usize>(
+    mass: R,
+    theory: Theory,
+    current: &Current,
+    at: &Station<R>,
+    waves: &mut InWaves<R, D>,
+    out: &mut Load<R>,
+) {
+    let swell = &waves.swell;
+    let (a, by_x, by_z) = match theory {
+        Theory::Energy => swell.along_path(current, at.x[2]),
+        Theory::Morison => (swell.acceleration, swell.acceleration_by_x, [R::zero(); 3]),
+    };
+    for i in 0..3 {
+        out.f[i] = mass.fma(a[i], out.f[i]);
+    }
+    if TANGENT {
+        waves.add(mass, &by_x);
+        if theory == Theory::Energy && !current.is_uniform() {
+            for i in 0..3 {
+                out.d_x[i][2] = mass.fma(by_z[i], out.d_x[i][2]);
             }
         }
     }

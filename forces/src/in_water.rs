@@ -1,9 +1,8 @@
 //! All that water does to a station, at once.
 
 use crate::wetted::add_share;
-use crate::{AddedMass, AllRound, Buoyancy, Drag, FroudeKrylov, Immersed, Surface, Wetted};
+use crate::{AddedMass, AllRound, Buoyancy, Drag, FroudeKrylov, Immersed, InWaves, Surface, Wetted};
 use ropewalk_core::{Gives, Joined, Law, Load, Real, Station};
-use ropewalk_scene::Swell;
 use std::any::Any;
 use std::sync::Arc;
 
@@ -50,45 +49,50 @@ impl InWater {
 
     /// What all of them have in `f`, from water that is everywhere.
     #[inline(always)]
-    fn whole<R: Real, const TANGENT: bool>(
+    fn whole<R: Real, const TANGENT: bool, const D: usize>(
         &self,
         at: &Station<R>,
-        swell: Option<&Swell<R>>,
+        mut waves: Option<&mut InWaves<R, D>>,
         out: &mut Load<R>,
     ) {
         if let Some(drag) = &self.drag {
-            drag.load_in::<R, TANGENT>(at, swell, out);
+            drag.load_in::<R, TANGENT, D>(at, waves.as_deref_mut(), out);
         }
         if let Some(added_mass) = &self.added_mass {
-            added_mass.load_in::<R, TANGENT>(at, swell, out);
+            added_mass.load_in::<R, TANGENT, D>(at, waves.as_deref_mut(), out);
         }
         if let Some(all_round) = &self.all_round {
-            all_round.load_in::<R, TANGENT>(at, swell, out);
+            all_round.load_in::<R, TANGENT, D>(at, waves.as_deref_mut(), out);
         }
         if let Some(pressure) = &self.pressure {
-            pressure.load_in::<R, TANGENT>(at, swell, out);
+            pressure.load_in::<R, TANGENT, D>(at, waves.as_deref_mut(), out);
+        }
+        if TANGENT && let Some(waves) = waves {
+            waves.put(out);
         }
     }
 
     /// The same with buoyancy, by the share of the station that is wet.
     #[inline(always)]
-    fn load_in<R: Real, const TANGENT: bool>(
+    fn load_in<R: Real, const TANGENT: bool, const D: usize>(
         &self,
         at: &Station<R>,
-        swell: Option<&Swell<R>>,
+        waves: Option<&mut InWaves<R, D>>,
         out: &mut Load<R>,
     ) {
-        let wet = if self.surface.covers(at, swell) {
-            self.whole::<R, TANGENT>(at, swell, out);
-            self.surface.wet_below(at, swell)
+        let top = waves.as_ref().map(|waves| waves.swell.top);
+        let top = top.as_ref();
+        let wet = if self.surface.covers(at, top) {
+            self.whole::<R, TANGENT, D>(at, waves, out);
+            self.surface.wet_below(at, top)
         } else {
-            let (wet, mut whole) = (self.surface.wet(at, swell), Load::zero());
-            self.whole::<R, TANGENT>(at, swell, &mut whole);
-            add_share::<R, TANGENT>(&wet, swell, &whole, out);
+            let (wet, mut whole) = (self.surface.wet(at, top), Load::zero());
+            self.whole::<R, TANGENT, D>(at, waves, &mut whole);
+            add_share::<R, TANGENT>(&wet, top, &whole, out);
             wet
         };
         if let Some(buoyancy) = &self.buoyancy {
-            buoyancy.lift::<R, TANGENT>(at, &wet, swell, out);
+            buoyancy.lift::<R, TANGENT>(at, &wet, top, out);
         }
     }
 }
@@ -127,8 +131,29 @@ impl Law for InWater {
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
         // compiled apart, so that still water knows nothing of waves
         match &self.surface.sea {
-            None => self.load_in::<R, TANGENT>(at, None, out),
-            Some(sea) => self.load_in::<R, TANGENT>(at, Some(&sea.along_once(t, at)), out),
+            None => self.load_in::<R, TANGENT, 3>(at, None, out),
+            Some(sea) => self.load_in::<R, TANGENT, 3>(at, Some(&mut InWaves::of(sea.along(t, at))), out),
+        }
+    }
+    #[inline(always)]
+    fn load_all<'a, R: Real, const TANGENT: bool>(
+        &self,
+        t: f64,
+        stations: impl Iterator<Item = (Station<R>, &'a mut Load<R>)>,
+    ) {
+        // bodies of one station have moved on by the next
+        match self.surface.sea.as_ref().filter(|_| R::LANES > 1).and_then(|sea| sea.table()) {
+            None => {
+                for (at, out) in stations {
+                    self.load::<R, TANGENT>(t, &at, out);
+                }
+            }
+            Some(mut table) => {
+                for (at, out) in stations {
+                    let mut waves = InWaves::of(table.along(t, &at));
+                    self.load_in::<R, TANGENT, 2>(&at, Some(&mut waves), out);
+                }
+            }
         }
     }
     fn join(&self, other: &dyn Any) -> Option<Joined> {

@@ -11,6 +11,7 @@
 
 use ropewalk_core::{Real, Station, V3, dot};
 use ropewalk_scene::{Sea, Swell, ball_below};
+use ropewalk_sea::Top;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -72,9 +73,15 @@ impl Surface {
         self.sea.as_ref().map(|sea| sea.along(t, at))
     }
 
-    /// Its waves at a place, if it has some.
-    pub fn swell_at<R: Real>(&self, t: f64, x: &V3<R>) -> Option<Swell<R>> {
-        self.sea.as_ref().map(|sea| sea.at(t, x))
+    /// How it stands in waves above a station, if it has some.
+    #[inline(always)]
+    pub fn top<R: Real>(&self, t: f64, at: &Station<R>) -> Option<Top<R>> {
+        self.swell(t, at).map(|swell| swell.top)
+    }
+
+    /// How it stands in waves above a place, if it has some.
+    pub fn top_at<R: Real>(&self, t: f64, x: &V3<R>) -> Option<Top<R>> {
+        self.sea.as_ref().map(|sea| sea.at(t, x).top)
     }
 
     /// How much of a step `h` follows it, as [`Law::reach`](ropewalk_core::Law::reach).
@@ -82,47 +89,47 @@ impl Surface {
         self.sea.as_ref().map_or(h, |sea| sea.reach(h))
     }
 
-    /// How a station's cell lies in the water, whose waves are those of [`Surface::swell`] there.
+    /// How a station's cell lies in the water, which stands above it as [`Surface::top`] says.
     #[inline(always)]
-    pub fn wet<R: Real>(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> Wet<R> {
-        if self.covers(at, swell) {
-            self.wet_below(at, swell)
+    pub fn wet<R: Real>(&self, at: &Station<R>, top: Option<&Top<R>>) -> Wet<R> {
+        if self.covers(at, top) {
+            self.wet_below(at, top)
         } else {
-            Wet::each(at, self.depth(at, swell), radius(at))
+            Wet::each(at, self.depth(at, top), radius(at))
         }
     }
 
     /// The same of cells that it covers.
     #[inline(always)]
-    pub(crate) fn wet_below<R: Real>(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> Wet<R> {
-        Wet::below(at, self.depth(at, swell), radius(at))
+    pub(crate) fn wet_below<R: Real>(&self, at: &Station<R>, top: Option<&Top<R>>) -> Wet<R> {
+        Wet::below(at, self.depth(at, top), radius(at))
     }
 
     /// Whether the cells of all lanes lie below it as a whole.
     #[inline(always)]
-    pub(crate) fn covers<R: Real>(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> bool {
-        all_below(at, self.depth(at, swell), radius(at))
+    pub(crate) fn covers<R: Real>(&self, at: &Station<R>, top: Option<&Top<R>>) -> bool {
+        all_below(at, self.depth(at, top), radius(at))
     }
 
     /// The same, if only the share is asked for: next to nothing is to be done where all is wet.
     #[inline(always)]
-    pub(crate) fn share<R: Real>(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> Wet<R> {
-        let s = self.depth(at, swell);
-        if self.covers(at, swell) { Wet::whole(s) } else { Wet::each(at, s, radius(at)) }
+    pub(crate) fn share<R: Real>(&self, at: &Station<R>, top: Option<&Top<R>>) -> Wet<R> {
+        let s = self.depth(at, top);
+        if self.covers(at, top) { Wet::whole(s) } else { Wet::each(at, s, radius(at)) }
     }
 
     /// Depth of the axis at a station [m].
     #[inline(always)]
-    fn depth<R: Real>(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> R {
-        let risen = swell.map_or(R::zero(), |swell| swell.elevation);
+    fn depth<R: Real>(&self, at: &Station<R>, top: Option<&Top<R>>) -> R {
+        let risen = top.map_or(R::zero(), |top| top.elevation);
         R::of(self.level) + risen - at.x[2]
     }
 
     /// Share of a ball's volume that is wet, and what it changes by with height [1/m]; `x` is its middle.
     pub fn ball<R: Real>(&self, t: f64, x: &V3<R>, radius: f64) -> (R, R) {
-        match self.swell_at(t, x) {
+        match self.top_at(t, x) {
             None => ball_below(self.level, x[2], radius),
-            Some(swell) => ball_below(self.level, x[2] - swell.elevation, radius),
+            Some(top) => ball_below(self.level, x[2] - top.elevation, radius),
         }
     }
 }
@@ -239,9 +246,9 @@ impl<R: Real> Wet<R> {
 
     /// How fast the share changes as the station and the surface move [1/s].
     #[inline(always)]
-    pub(crate) fn share_rate(&self, at: &Station<R>, swell: Option<&Swell<R>>) -> R {
+    pub(crate) fn share_rate(&self, at: &Station<R>, top: Option<&Top<R>>) -> R {
         let still = self.share_by_z.fma(at.v[2], dot(&self.share_by_slope, &at.slope_rate));
-        swell.map_or(still, |swell| still - self.share_by_z * swell.rise(&at.v))
+        top.map_or(still, |top| still - self.share_by_z * top.rise(&at.v))
     }
 }
 

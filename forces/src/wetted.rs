@@ -1,21 +1,24 @@
 //! Loads of water on bodies that may lie across its surface.
 
 use crate::in_water::InWater;
-use crate::{Surface, Wet};
+use crate::{InWaves, Surface, Wet};
 use ropewalk_core::{Gives, Joined, Law, Load, Power, Real, Station, V3};
 use ropewalk_scene::{Sea, Swell};
+use ropewalk_sea::Top;
 use std::any::Any;
 use std::sync::Arc;
 
 /// A law of a fluid that may have waves, to which their motion at a station may be told: it is found once for all that asks.
+///
+/// What a load changes by with the place on their account is left with them, to be [put](InWaves::put) into the load.
 pub trait Immersed: Law {
     /// Its waves.
     fn sea(&self) -> Option<&Arc<Sea>>;
-    /// As [`Law::load`], where its waves do this.
-    fn load_in<R: Real, const TANGENT: bool>(
+    /// As [`Law::load`], in these waves.
+    fn load_in<R: Real, const TANGENT: bool, const D: usize>(
         &self,
         at: &Station<R>,
-        swell: Option<&Swell<R>>,
+        waves: Option<&mut InWaves<R, D>>,
         out: &mut Load<R>,
     );
 }
@@ -49,7 +52,7 @@ impl<L: Immersed> Wetted<L> {
     #[inline(always)]
     fn share<R: Real>(&self, t: f64, at: &Station<R>) -> (Wet<R>, Option<Swell<R>>) {
         let swell = self.surface.swell(t, at);
-        let mut wet = self.surface.share(at, swell.as_ref());
+        let mut wet = self.surface.share(at, swell.as_ref().map(|swell| &swell.top));
         if self.above {
             wet.share = R::of(1.0) - wet.share;
             wet.share_by_z = -wet.share_by_z;
@@ -68,12 +71,32 @@ impl<L: Immersed> Wetted<L> {
         let mut whole = Load::zero();
         match (self.law.sea(), &self.surface.sea) {
             (Some(own), Some(sea)) if Arc::ptr_eq(own, sea) => {
-                self.law.load_in::<R, TANGENT>(at, swell, &mut whole);
+                add_in_waves::<R, TANGENT, 3>(&self.law, at, swell, &mut whole);
             }
-            (None, _) => self.law.load_in::<R, TANGENT>(at, None, &mut whole),
+            (None, _) => self.law.load_in::<R, TANGENT, 3>(at, None, &mut whole),
             _ => self.law.load::<R, TANGENT>(t, at, &mut whole),
         }
         whole
+    }
+}
+
+/// Adds the load of a law at a station where its waves do this, if it has some.
+#[inline(always)]
+pub(crate) fn add_in_waves<R: Real, const TANGENT: bool, const D: usize>(
+    law: &impl Immersed,
+    at: &Station<R>,
+    swell: Option<&Swell<R, D>>,
+    out: &mut Load<R>,
+) {
+    match swell {
+        None => law.load_in::<R, TANGENT, D>(at, None, out),
+        Some(swell) => {
+            let mut waves = InWaves::of(*swell);
+            law.load_in::<R, TANGENT, D>(at, Some(&mut waves), out);
+            if TANGENT {
+                waves.put(out);
+            }
+        }
     }
 }
 
@@ -90,7 +113,7 @@ fn add_scaled<R: Real>(share: R, whole: &[V3<R>; 3], out: &mut [V3<R>; 3]) {
 #[inline(always)]
 pub(crate) fn add_share<R: Real, const TANGENT: bool>(
     wet: &Wet<R>,
-    swell: Option<&Swell<R>>,
+    top: Option<&Top<R>>,
     whole: &Load<R>,
     out: &mut Load<R>,
 ) {
@@ -118,10 +141,10 @@ pub(crate) fn add_share<R: Real, const TANGENT: bool>(
             out.g_slope[i][j] += whole.g[i] * by_slope[j];
         }
     }
-    let Some(swell) = swell else { return };
+    let Some(top) = top else { return };
     for i in 0..3 {
         for j in 0..2 {
-            let by_x = by_z * swell.slope[j];
+            let by_x = by_z * top.slope[j];
             out.d_x[i][j] -= whole.f[i] * by_x;
             out.g_x[i][j] -= whole.g[i] * by_x;
         }
@@ -151,7 +174,7 @@ impl<L: Immersed> Law for Wetted<L> {
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
         let (wet, swell) = self.share(t, at);
         let whole = self.whole::<R, TANGENT>(t, at, swell.as_ref());
-        add_share::<R, TANGENT>(&wet, swell.as_ref(), &whole, out);
+        add_share::<R, TANGENT>(&wet, swell.as_ref().map(|swell| &swell.top), &whole, out);
     }
 
     fn join(&self, other: &dyn Any) -> Option<Joined> {
@@ -163,7 +186,7 @@ impl<L: Immersed> Law for Wetted<L> {
         let (wet, swell) = self.share(t, at);
         let share = wet.share;
         let power = self.law.power(t, at, &self.whole::<R, false>(t, at, swell.as_ref()));
-        let met = wet.share_rate(at, swell.as_ref()) * self.law.kinetic(t, at);
+        let met = wet.share_rate(at, swell.as_ref().map(|swell| &swell.top)) * self.law.kinetic(t, at);
         Power {
             dissipated: share * power.dissipated,
             supplied: share.fma(power.supplied, met),

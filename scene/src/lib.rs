@@ -40,7 +40,7 @@ pub use responses::{RaoAngles, RaoPer, RaoPhase, RaoSpec, RaoSymmetry, RaoWaves}
 pub use ropewalk_quantity as quantity;
 pub use scene::{Analysis, GRAVITY, RangeSpec, Run, Scene, SceneError, ShapeTitles, TableSpec};
 pub use scene_file::{Bundled, SceneFile, SceneText};
-pub use sea::{Sea, Swell};
+pub use sea::{Sea, SeaTable, Swell};
 pub use spec::{
     ConstraintSpec, ControllerSpec, ElementSpec, ForceSpec, ListInfo, MotionSpec, RecordSpec, SECTIONS,
     SpecInfo, SpecKind, lists, registered,

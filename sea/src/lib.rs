@@ -21,6 +21,7 @@
 //! # Ok::<(), ropewalk_sea::SeaError>(())
 //! ```
 
+mod axes;
 mod dispersion;
 mod error;
 mod lattice;
@@ -32,10 +33,12 @@ mod sampling;
 mod spectrum;
 mod waves;
 
+pub use axes::{Axes, plus_product, transposed_times};
 pub use dispersion::{group_velocity, wavenumber, wavenumber_on_current};
 pub use error::SeaError;
 pub use lattice::{Instant, Lattice, Stations};
 pub use measured::measured;
+pub use motion::{Motion, Top};
 pub use random::SplitMix64;
 pub use response::{MOTIONS, Responses, VesselResponse};
 pub use sampling::{Sampling, Spreading, sample};

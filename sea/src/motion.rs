@@ -1,10 +1,30 @@
 //! The motion of the water under waves: in space, or in the plane of waves that have one direction.
 
+use crate::axes::Axes;
 use ropewalk_core::Real;
 
-/// The motion at a place, in `D` dimensions of which the last is upwards.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Motion<R, const D: usize> {
+/// The surface above a place, over lanes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Top<R> {
+    /// Elevation `η` above still water [m].
+    pub elevation: R,
+    /// `∂η/∂x` and `∂η/∂y`.
+    pub slope: [R; 2],
+    /// `∂η/∂t` [m/s].
+    pub rising: R,
+}
+
+impl<R: Real> Top<R> {
+    /// How fast it rises where one moves with velocity `v`: `∂η/∂t + v·∇η` [m/s].
+    #[inline(always)]
+    pub fn rise(&self, v: &[R; 3]) -> R {
+        self.slope[0].fma(v[0], self.slope[1].fma(v[1], self.rising))
+    }
+}
+
+/// The motion at a place, over lanes, in `D` dimensions of which the last is upwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion<R, const D: usize> {
     /// Velocity [m/s].
     pub velocity: [R; D],
     /// `∂u/∂t` as one sees it who drifts with the current that carries the waves [m/s²].
@@ -20,7 +40,7 @@ pub(crate) struct Motion<R, const D: usize> {
 impl<R: Real, const D: usize> Motion<R, D> {
     /// Of still water.
     #[inline(always)]
-    pub fn still() -> Self {
+    pub(crate) fn still() -> Self {
         let (none, nothing) = ([R::zero(); D], [[R::zero(); D]; D]);
         Motion {
             velocity: none,
@@ -34,7 +54,7 @@ impl<R: Real, const D: usize> Motion<R, D> {
     /// Makes what linear theory says at the stretched height, with its derivatives by that, the motion at the place itself. The
     /// stretched height changes `by_z` and `by_eta`, the elevation; the surface has this slope, and rises.
     #[inline(always)]
-    pub fn stretch(&mut self, [by_z, by_eta]: [R; 2], slope: [R; D], rising: R, current: [R; D]) {
+    pub(crate) fn stretch(&mut self, [by_z, by_eta]: [R; 2], slope: [R; D], rising: R, current: [R; D]) {
         let (last, rises) = (D - 1, by_eta * rising);
         for i in 0..D {
             let by = &self.gradient[i];
@@ -57,7 +77,7 @@ impl<R: Real, const D: usize> Motion<R, D> {
 
     /// Makes it that of waves that have risen so far, and do so at this rate [1/s].
     #[inline(always)]
-    pub fn rise(&mut self, [risen, rising]: [f64; 2]) {
+    pub(crate) fn rise(&mut self, [risen, rising]: [f64; 2]) {
         if risen == 1.0 && rising == 0.0 {
             return;
         }
@@ -77,26 +97,15 @@ impl<R: Real, const D: usize> Motion<R, D> {
 }
 
 impl<R: Real> Motion<R, 2> {
-    /// The same in space, where the waves go this way.
+    /// The same in space.
     #[inline(always)]
-    pub fn spread(&self, way: [R; 2]) -> Motion<R, 3> {
+    pub fn spread(&self, axes: &Axes<R, 2>) -> Motion<R, 3> {
         Motion {
-            velocity: vector(self.velocity, way),
-            acceleration: vector(self.acceleration, way),
-            rate: vector(self.rate, way),
-            gradient: matrix(self.gradient, way),
-            acceleration_gradient: matrix(self.acceleration_gradient, way),
+            velocity: axes.vector(&self.velocity),
+            acceleration: axes.vector(&self.acceleration),
+            rate: axes.vector(&self.rate),
+            gradient: axes.matrix(&self.gradient),
+            acceleration_gradient: axes.matrix(&self.acceleration_gradient),
         }
     }
-}
-
-#[inline(always)]
-fn vector<R: Real>([along, up]: [R; 2], [cx, cy]: [R; 2]) -> [R; 3] {
-    [along * cx, along * cy, up]
-}
-
-#[inline(always)]
-fn matrix<R: Real>([along, up]: [[R; 2]; 2], way: [R; 2]) -> [[R; 3]; 3] {
-    let ([cx, cy], of, below) = (way, vector(along, way), vector(up, way));
-    [[of[0] * cx, of[1] * cx, of[2] * cx], [of[0] * cy, of[1] * cy, of[2] * cy], below]
 }

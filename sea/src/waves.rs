@@ -2,7 +2,7 @@
 
 use crate::dispersion::{wavenumber, wavenumber_on_current};
 use crate::error::{SeaError, finite, positive};
-use crate::motion::Motion;
+use crate::motion::{Motion, Top};
 use ropewalk_core::Real;
 use std::f64::consts::PI;
 
@@ -31,28 +31,28 @@ pub enum Stretching {
     None,
 }
 
-/// The motion of the water at a place and a time; over lanes at several.
+/// The motion of the water at a place and a time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Flow<R = f64> {
+pub struct Flow {
     /// Elevation `η` of the surface above still water there [m].
-    pub elevation: R,
+    pub elevation: f64,
     /// `∂η/∂x` and `∂η/∂y`.
-    pub slope: [R; 2],
+    pub slope: [f64; 2],
     /// `∂η/∂t` [m/s].
-    pub rising: R,
+    pub rising: f64,
     /// Velocity [m/s].
-    pub velocity: [R; 3],
+    pub velocity: [f64; 3],
     /// `∂u/∂t` [m/s²]; of waves on a current as one sees it who drifts with it.
-    pub acceleration: [R; 3],
+    pub acceleration: [f64; 3],
     /// What the velocity changes by with time at a fixed place [m/s²]: other than the acceleration, it counts how the column is
     /// stretched as the surface rises.
-    pub rate: [R; 3],
+    pub rate: [f64; 3],
     /// `∂u_i/∂x_j` [1/s], stretching included.
-    pub gradient: [[R; 3]; 3],
+    pub gradient: [[f64; 3]; 3],
     /// What the acceleration changes by from place to place [1/s²], stretching included.
-    pub acceleration_gradient: [[R; 3]; 3],
+    pub acceleration_gradient: [[f64; 3]; 3],
     /// Pressure by the waves over the density of water [m²/s²].
-    pub pressure: R,
+    pub pressure: f64,
 }
 
 /// One wave, ready for sums.
@@ -228,8 +228,8 @@ impl Waves {
         (surface.elevation, surface.slope)
     }
 
-    /// A flow of which only the surface is known.
-    fn surface(&self, x: f64, y: f64, t: f64) -> Flow {
+    /// The surface above a place.
+    fn surface(&self, x: f64, y: f64, t: f64) -> Top<f64> {
         let [risen, rising] = self.risen(t);
         let (mut eta, mut slope, mut rate) = (0.0, [0.0; 2], 0.0);
         for c in &self.all {
@@ -240,12 +240,7 @@ impl Waves {
             slope[0] += steep * c.way[0];
             slope[1] += steep * c.way[1];
         }
-        Flow {
-            elevation: risen * eta,
-            slope: slope.map(|s| risen * s),
-            rising: risen * rate + rising * eta,
-            ..Flow::default()
-        }
+        Top { elevation: risen * eta, slope: slope.map(|s| risen * s), rising: risen * rate + rising * eta }
     }
 
     /// The height at which linear theory is asked for what happens at `z` [m], and its derivatives by `z` and by the
@@ -268,8 +263,8 @@ impl Waves {
 
     /// The motion of the water at a place, which should be in it, and a time: the sum over all waves.
     pub fn at(&self, [x, y, z]: [f64; 3], t: f64) -> Flow {
-        let (mut flow, mut motion) = (self.surface(x, y, t), Motion::<f64, 3>::still());
-        let [up, by_z, by_eta] = self.stretched(z, flow.elevation);
+        let (top, mut motion, mut pressure) = (self.surface(x, y, t), Motion::<f64, 3>::still(), 0.0);
+        let [up, by_z, by_eta] = self.stretched(z, top.elevation);
         for c in &self.all {
             let (sin, cos) = c.angle(x, y, t).sin_cos();
             let [ch, sh, p] = c.depths(up, self.depth);
@@ -281,18 +276,16 @@ impl Waves {
             motion.acceleration[0] += u * c.sigma * sin * cx;
             motion.acceleration[1] += u * c.sigma * sin * cy;
             motion.acceleration[2] -= w * c.sigma * cos;
-            flow.pressure += self.g * c.a * p * cos;
+            pressure += self.g * c.a * p * cos;
             add_gradient(&mut motion.gradient, c.way, -u * c.k * sin, w * c.k * cos);
             let k = c.k * c.sigma;
             add_gradient(&mut motion.acceleration_gradient, c.way, u * k * cos, w * k * sin);
         }
         let (risen, [cx, cy]) = (self.risen(t), self.current);
-        flow.pressure *= risen[0];
-        let [sx, sy] = flow.slope;
-        motion.stretch([by_z, by_eta], [sx, sy, 0.0], flow.rising, [cx, cy, 0.0]);
+        let [sx, sy] = top.slope;
+        motion.stretch([by_z, by_eta], [sx, sy, 0.0], top.rising, [cx, cy, 0.0]);
         motion.rise(risen);
-        let Motion { velocity, acceleration, rate, gradient, acceleration_gradient } = motion;
-        Flow { velocity, acceleration, rate, gradient, acceleration_gradient, ..flow }
+        Flow::of(top, motion, risen[0] * pressure)
     }
 }
 
@@ -309,21 +302,36 @@ fn add_gradient(g: &mut [[f64; 3]; 3], [cx, cy]: [f64; 2], along: f64, up: f64) 
     }
 }
 
-impl<R: Real> Flow<R> {
-    /// Of still water.
-    #[inline(always)]
-    pub(crate) fn still() -> Self {
-        let (none, zero) = ([[R::zero(); 3]; 3], R::zero());
+impl Flow {
+    pub(crate) fn of(top: Top<f64>, motion: Motion<f64, 3>, pressure: f64) -> Self {
+        let (Top { elevation, slope, rising }, Motion { velocity, acceleration, rate, .. }) = (top, motion);
+        let Motion { gradient, acceleration_gradient, .. } = motion;
         Flow {
-            elevation: zero,
-            slope: [zero; 2],
-            rising: zero,
-            velocity: none[0],
-            acceleration: none[0],
-            rate: none[0],
-            gradient: none,
-            acceleration_gradient: none,
-            pressure: zero,
+            elevation,
+            slope,
+            rising,
+            velocity,
+            acceleration,
+            rate,
+            gradient,
+            acceleration_gradient,
+            pressure,
+        }
+    }
+
+    /// The surface above the place.
+    pub fn top(&self) -> Top<f64> {
+        Top { elevation: self.elevation, slope: self.slope, rising: self.rising }
+    }
+
+    /// The motion of the water there.
+    pub fn motion(&self) -> Motion<f64, 3> {
+        Motion {
+            velocity: self.velocity,
+            acceleration: self.acceleration,
+            rate: self.rate,
+            gradient: self.gradient,
+            acceleration_gradient: self.acceleration_gradient,
         }
     }
 }

@@ -9,7 +9,8 @@ mod spec;
 pub(crate) use spec::free_tips;
 pub use spec::{DragLaw, DragSpec};
 
-use crate::Immersed;
+use crate::wetted::add_in_waves;
+use crate::{Immersed, InWaves};
 use ropewalk_core::error::{need, not_negative};
 use ropewalk_core::{BuildError, Gives, Law, Load, Power, Real, Station, V3, dot, scaled};
 use ropewalk_scene::{Current, Sea, Swell};
@@ -187,16 +188,6 @@ pub(crate) fn add<R: Real>(to: &mut V3<R>, x: &V3<R>) {
     }
 }
 
-/// Takes the product of two matrices off another one.
-#[inline(always)]
-pub(crate) fn less_product<R: Real>(from: &mut [V3<R>; 3], a: &[V3<R>; 3], b: &[V3<R>; 3]) {
-    for i in 0..3 {
-        for j in 0..3 {
-            from[i][j] -= a[i][0].fma(b[0][j], a[i][1].fma(b[1][j], a[i][2] * b[2][j]));
-        }
-    }
-}
-
 /// Cube root of a number that isn't negative: a third of the exponent for a start, then Halley's method, which triples
 /// the digits at each step.
 #[inline(always)]
@@ -233,7 +224,7 @@ impl Law for Drag {
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
         let swell = self.sea.as_ref().map(|sea| sea.along(t, at));
-        self.load_in::<R, TANGENT>(at, swell.as_ref(), out);
+        add_in_waves::<R, TANGENT, 3>(self, at, swell.as_ref(), out);
     }
 
     fn local(&self, quantity: &str, t: f64, at: &Station<f64>) -> Option<f64> {
@@ -266,16 +257,16 @@ impl Immersed for Drag {
         self.sea.as_ref()
     }
     #[inline(always)]
-    fn load_in<R: Real, const TANGENT: bool>(
+    fn load_in<R: Real, const TANGENT: bool, const D: usize>(
         &self,
         at: &Station<R>,
-        swell: Option<&Swell<R>>,
+        waves: Option<&mut InWaves<R, D>>,
         out: &mut Load<R>,
     ) {
         let one = R::of(1.0);
         let (mut u, du) = self.current.at(at.x[2]);
-        if let Some(swell) = swell {
-            add(&mut u, &swell.u);
+        if let Some(waves) = &waves {
+            add(&mut u, &waves.swell.u);
         }
         let v = [at.v[0] - u[0], at.v[1] - u[1], at.v[2] - u[2]];
         let stretch = dot(&at.slope, &at.slope).sqrt();
@@ -322,8 +313,8 @@ impl Immersed for Drag {
                 out.d_x[i][2] -= dot(&dv[i], &du);
             }
         }
-        if let Some(swell) = swell {
-            less_product(&mut out.d_x, &dv, &swell.by_x);
+        if let Some(waves) = waves {
+            waves.drift(&dv);
         }
     }
 }

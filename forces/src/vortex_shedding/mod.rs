@@ -195,8 +195,8 @@ impl VortexShedding {
         }
         now.t = t;
         let wet = self.fluid.surface.as_ref().map_or(1.0, |surface| {
-            let swell = surface.swell(t, at);
-            surface.wet(at, swell.as_ref()).share
+            let top = surface.top(t, at);
+            surface.wet(at, top.as_ref()).share
         });
         if speed > 0.0 {
             now.across = scaled(1.0 / speed, &cross(&tangent, &flow));

@@ -6,7 +6,7 @@ mod swell;
 use crate::waves::{Evaluation, WavesSpec};
 use memory::{Found, Key, MOST, Memory, Places, key_of};
 use ropewalk_core::{BuildError, LaneTask, Real, Station, V3, Width, reach, run};
-use ropewalk_sea::{Lattice, SplitMix64, Stations, Waves};
+use ropewalk_sea::{Axes, Lattice, SplitMix64, Stations, Top, Waves};
 use std::f64::consts::TAU;
 use std::fmt;
 use std::sync::Arc;
@@ -128,18 +128,11 @@ impl Sea {
         self.from(key_of(at), t, &at.x)
     }
 
-    /// The same for who asks once for all: it isn't kept.
+    /// Its table, if it has one, for who asks once for all laws at one station after the other.
     #[inline(always)]
-    pub fn along_once<R: Real>(&self, t: f64, at: &Station<R>) -> Swell<R> {
-        if R::LANES == 1 || self.lattice.is_none() {
-            return self.along(t, at);
-        }
-        let mut memory = Memory::of(self);
-        let slot = memory.slot(key_of(at));
-        let Memory { lattice: Some(lattice), stations, .. } = &mut *memory else { return self.along(t, at) };
-        let swell = looked_up(lattice, &mut stations[slot], self.level, t, &at.x);
-        memory.keep();
-        swell
+    pub fn table(&self) -> Option<SeaTable> {
+        self.lattice.as_ref()?;
+        Some(SeaTable { memory: Some(Memory::of(self)), level: self.level })
     }
 
     /// The motion at places from the slot of a key.
@@ -159,12 +152,12 @@ impl Sea {
         if R::LANES == 1 {
             // numbers that know their derivative get it from here; of all others the distance is nothing
             let off = [x[0] - R::read(&at[0]), x[1] - R::read(&at[1]), x[2] - R::read(&at[2])];
-            let Swell { by_x, acceleration_by_x, slope: [sx, sy], .. } = swell;
+            let Swell { by_x, acceleration_by_x, top: Top { slope: [sx, sy], .. }, .. } = swell;
             swell.u = moved(&by_x, &off, swell.u);
             for by in [&mut swell.acceleration, &mut swell.rate, &mut swell.by_t] {
                 *by = moved(&acceleration_by_x, &off, *by);
             }
-            swell.elevation = sx.fma(off[0], sy.fma(off[1], swell.elevation));
+            swell.top.elevation = sx.fma(off[0], sy.fma(off[1], swell.top.elevation));
         }
         memory.keep();
         swell
@@ -191,8 +184,38 @@ impl Sea {
                 let flow = self.waves.at([x, y, up], t);
                 let above = up > flow.elevation;
                 let flow = if above { self.waves.at([x, y, flow.elevation], t) } else { flow };
-                Swell::new(&flow, f64::from(u8::from(above))).write(&mut found.rows, lane);
+                let above = f64::from(u8::from(above));
+                Swell::new(Axes::space(), &flow.motion(), flow.top(), above).write(&mut found.rows, lane);
             }),
+        }
+    }
+}
+
+/// A sea as its table has it, along the axes of its waves. What it finds isn't kept.
+pub struct SeaTable {
+    /// This thread's, until it is given back.
+    memory: Option<Box<Memory>>,
+    level: f64,
+}
+
+impl SeaTable {
+    /// The motion of the water at time `t` [s] at stations.
+    #[inline(always)]
+    pub fn along<R: Real>(&mut self, t: f64, at: &Station<R>) -> Swell<R, 2> {
+        let Some(memory) = &mut self.memory else { unreachable!("it has it until it is dropped") };
+        let slot = memory.slot(key_of(at));
+        let Memory { lattice: Some(lattice), stations, .. } = &mut **memory else {
+            unreachable!("a sea with a table is remembered with it")
+        };
+        looked_up(lattice, &mut stations[slot], self.level, t, &at.x)
+    }
+}
+
+impl Drop for SeaTable {
+    #[inline(always)]
+    fn drop(&mut self) {
+        if let Some(memory) = self.memory.take() {
+            memory.keep();
         }
     }
 }
@@ -210,7 +233,7 @@ impl LaneTask for Look<'_> {
     fn go<R: Real>(self) {
         let Look { lattice, stations, level, found } = self;
         let x = [R::read(&found.at[0]), R::read(&found.at[1]), R::read(&found.at[2])];
-        looked_up(lattice, stations, level, found.t, &x).write(&mut found.rows, 0);
+        looked_up(lattice, stations, level, found.t, &x).spread().write(&mut found.rows, 0);
     }
 }
 
@@ -222,12 +245,12 @@ fn looked_up<R: Real>(
     level: f64,
     t: f64,
     [x, y, z]: &V3<R>,
-) -> Swell<R> {
+) -> Swell<R, 2> {
     let now = lattice.instant(t);
-    let mut flow = lattice.surface(now, [*x, *y], stations);
-    let (up, top) = (*z - R::of(level), flow.elevation);
-    lattice.within(now, [*x, *y, up.if_gt(top, top, up)], stations, &mut flow);
-    Swell::new(&flow, up.if_gt(top, R::of(1.0), R::zero()))
+    let top = lattice.surface(now, [*x, *y], stations);
+    let (up, eta) = (*z - R::of(level), top.elevation);
+    let motion = lattice.within(now, [*x, *y, up.if_gt(eta, eta, up)], &top, stations);
+    Swell::new(lattice.axes(), &motion, top, up.if_gt(eta, R::of(1.0), R::zero()))
 }
 
 /// A vector a little farther on.

@@ -3,7 +3,8 @@
 use super::cell::Spot;
 use super::stations::{Ends, Kept, Known, LANES, Row, Stations};
 use super::{Lattice, SPOTS};
-use crate::motion::Motion;
+use crate::axes::Axes;
+use crate::motion::{Motion, Top};
 use crate::waves::Flow;
 use ropewalk_core::{LaneTask, Real, Width, run};
 
@@ -24,9 +25,9 @@ impl Lattice {
     /// The motion of the water, as [`Waves::at`](crate::Waves::at) gives it, but for the pressure, which is left out.
     pub fn at(&mut self, [x, y, z]: [f64; 3], t: f64) -> Flow {
         let (mut stations, now) = (Stations::default(), self.instant(t));
-        let mut flow = self.surface(now, [x, y], &mut stations);
-        self.within(now, [x, y, z], &mut stations, &mut flow);
-        flow
+        let top = self.surface(now, [x, y], &mut stations);
+        let motion = self.within(now, [x, y, z], &top, &mut stations);
+        Flow::of(top, motion.spread(&self.axes()), 0.0)
     }
 
     /// Where time `t` [s] is among the instants of the table.
@@ -37,15 +38,21 @@ impl Lattice {
         Instant { t, n, late: instant - n }
     }
 
+    /// The axes of the plane of its waves.
+    #[inline(always)]
+    pub fn axes<R: Real>(&self) -> Axes<R, 2> {
+        Axes::plane(self.way)
+    }
+
     /// How far places are along the waves [m].
     #[inline(always)]
     fn along<R: Real>(&self, [x, y]: [R; 2]) -> R {
         x.fma(R::of(self.way[0]), y * R::of(self.way[1]))
     }
 
-    /// The surface above places, of a flow of which nothing else is known.
+    /// The surface above places.
     #[inline(always)]
-    pub fn surface<R: Real>(&mut self, now: Instant, place: [R; 2], stations: &mut Stations) -> Flow<R> {
+    pub fn surface<R: Real>(&mut self, now: Instant, place: [R; 2], stations: &mut Stations) -> Top<R> {
         if stations.lanes != R::LANES {
             *stations = Stations::of(R::LANES);
         }
@@ -54,7 +61,7 @@ impl Lattice {
         let Stations { surface: known, kept, .. } = stations;
         let mut off = along - R::read(&known.places[0]);
         if known.n != n || !R::of(NEAR * self.size / SPOTS as f64).all_gt(off.abs()) {
-            let mut x = [0.0; LANES];
+            let mut x = Row([0.0; LANES]);
             along.write(&mut x);
             let ends = &mut kept.surface;
             run(Width::best(), MeetSurface { lattice: self, along: &x, n, lanes: R::LANES, known, ends });
@@ -71,26 +78,26 @@ impl Lattice {
         let steep = off.fma(bend, steep);
         let [risen, rises] = self.waves.risen(t);
         let (risen, rises, [cx, cy]) = (R::of(risen), R::of(rises), self.way);
-        Flow {
+        Top {
             elevation: risen * elevation,
             slope: [risen * steep * R::of(cx), risen * steep * R::of(cy)],
             rising: risen.fma(rate, rises * elevation),
-            ..Flow::still()
         }
     }
 
-    /// Adds to a flow, of which the surface is known, what is under it at places: under still water if stretched so.
+    /// The motion of the water at places under a surface, along the [axes](Lattice::axes) of the waves: under still water if
+    /// stretched so.
     #[inline(always)]
     pub fn within<R: Real>(
         &mut self,
         now: Instant,
         [x, y, z]: [R; 3],
+        top: &Top<R>,
         stations: &mut Stations,
-        flow: &mut Flow<R>,
-    ) {
+    ) -> Motion<R, 2> {
         let Instant { t, n, late } = now;
         let along = self.along([x, y]);
-        let [up, by_z, by_eta] = self.waves.stretched(z, flow.elevation);
+        let [up, by_z, by_eta] = self.waves.stretched(z, top.elevation);
         let (depth, near) = (-up, R::read(&stations.near));
         let known = &stations.water;
         let mut off = [along - R::read(&known.places[0]), R::read(&known.places[1]) - depth];
@@ -98,7 +105,7 @@ impl Lattice {
             || !(near.all_gt(off[0].abs()) && near.all_gt(off[1].abs()))
             || !(depth.all_gt(R::read(&stations.from)) && R::read(&stations.to).all_gt(depth))
         {
-            let (mut x, mut down) = ([0.0; LANES], [0.0; LANES]);
+            let (mut x, mut down) = (Row([0.0; LANES]), Row([0.0; LANES]));
             along.write(&mut x);
             depth.write(&mut down);
             // a corner has four numbers of each kind
@@ -116,7 +123,7 @@ impl Lattice {
             [known.read::<R, 2>(6), known.read::<R, 2>(8), known.read::<R, 2>(10)],
         );
         let ([f, by], [df, dby]) = (around(now, off), around(rates, off));
-        let (way, current) = ([R::of(self.way[0]), R::of(self.way[1])], R::of(self.current));
+        let current = R::of(self.current);
         let mut motion = Motion::<R, 2> {
             velocity: [f[0], -f[1]],
             // as one sees it who drifts with the current
@@ -126,12 +133,10 @@ impl Lattice {
             acceleration_gradient: gradient(dby),
             ..Motion::still()
         };
-        let (steep, none) = (self.along(flow.slope), R::zero());
-        motion.stretch([by_z, by_eta], [steep, none], flow.rising, [current, none]);
+        let (steep, none) = (self.along(top.slope), R::zero());
+        motion.stretch([by_z, by_eta], [steep, none], top.rising, [current, none]);
         motion.rise(self.waves.risen(t));
-        let Motion { velocity, acceleration, rate, gradient, acceleration_gradient } = motion.spread(way);
-        (flow.velocity, flow.acceleration, flow.rate) = (velocity, acceleration, rate);
-        (flow.gradient, flow.acceleration_gradient) = (gradient, acceleration_gradient);
+        motion
     }
 }
 

@@ -1,11 +1,30 @@
 //! What is known of the table around stations.
 
 use ropewalk_core::Real;
+use std::ops::{Deref, DerefMut};
 
 /// As many lanes as the widest carrier has.
 pub(super) const LANES: usize = 8;
 
-pub(super) type Row = [f64; LANES];
+/// A number of each lane, where the widest carrier reads it at once.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Row(pub [f64; LANES]);
+
+impl Deref for Row {
+    type Target = [f64];
+    #[inline(always)]
+    fn deref(&self) -> &[f64] {
+        &self.0
+    }
+}
+
+impl DerefMut for Row {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [f64] {
+        &mut self.0
+    }
+}
 
 /// A generation of slots that never was.
 const NEVER: u64 = u64::MAX;
@@ -61,7 +80,7 @@ pub(super) struct Ends<const CORNERS: usize, const N: usize> {
     pub rows: [[Row; N]; 2],
 }
 
-const NOWHERE: Row = [f64::NAN; LANES];
+const NOWHERE: Row = Row([f64::NAN; LANES]);
 
 impl<const CORNERS: usize, const N: usize> Ends<CORNERS, N> {
     fn nothing() -> Self {
@@ -69,7 +88,7 @@ impl<const CORNERS: usize, const N: usize> Ends<CORNERS, N> {
             generation: NEVER,
             spots: [NOWHERE; 2],
             slots: [[0; CORNERS]; LANES],
-            rows: [[[0.0; LANES]; N]; 2],
+            rows: [[Row([0.0; LANES]); N]; 2],
         }
     }
 
@@ -82,7 +101,7 @@ impl<const CORNERS: usize, const N: usize> Ends<CORNERS, N> {
 
 impl<const D: usize, const N: usize> Known<D, N> {
     fn nothing() -> Self {
-        Known { n: f64::NAN, t: f64::NAN, places: [NOWHERE; D], now: [[0.0; LANES]; N] }
+        Known { n: f64::NAN, t: f64::NAN, places: [NOWHERE; D], now: [Row([0.0; LANES]); N] }
     }
 
     /// Moves on to a time between the instants, which are `tau` apart [s].

@@ -158,8 +158,37 @@ fn stations_that_move_find_what_those_find_that_come_anew() {
         let x = [10.0 + 3.0 * (0.3 * t).sin(), 0.2 * t, -20.0 + 19.0 * (0.7 * t).sin()];
         let anew = lattice.at(x, t);
         let now = lattice.instant(t);
-        let mut flow = lattice.surface(now, [x[0], x[1]], &mut known);
-        lattice.within(now, x, &mut known, &mut flow);
-        assert_eq!(flow, anew, "{k}");
+        let top = lattice.surface(now, [x[0], x[1]], &mut known);
+        let motion = lattice.within(now, x, &top, &mut known).spread(&lattice.axes());
+        assert_eq!((top, motion), (anew.top(), anew.motion()), "{k}");
     }
+}
+
+#[test]
+fn a_plane_in_space_has_its_vectors_and_matrices() {
+    use ropewalk_sea::{Axes, plus_product, transposed_times};
+    let (sin, cos) = 0.7_f64.sin_cos();
+    let (plane, space) = (Axes::plane([cos, sin]), Axes::space());
+    let (m, x): (_, [f64; 3]) = ([[1.0, 2.0], [3.0, 4.0]], [0.3, -0.5, 0.8]);
+    // what is along waves has both horizontal components, and what is across them none in the plane
+    let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-15);
+    assert!(near(plane.vector(&[2.0, 5.0]), [2.0 * cos, 2.0 * sin, 5.0]));
+    assert!(plane.along(&[-sin, cos, 0.0]).iter().all(|x| x.abs() < 1e-15));
+    // in the plane or in space, a matrix makes the same of a vector
+    let whole = plane.matrix(&m);
+    let in_plane = plane.along(&x);
+    let times = |m: &[[f64; 3]; 3], x: [f64; 3]| -> [f64; 3] {
+        std::array::from_fn(|i| (0..3).map(|j| m[i][j] * x[j]).sum())
+    };
+    let made = [0, 1].map(|i| m[i][0] * in_plane[0] + m[i][1] * in_plane[1]);
+    assert!(near(plane.vector(&made), times(&whole, x)));
+    assert!(near(plane.vector(&transposed_times(&m, &in_plane)), transposed_times(&whole, &x)));
+    let rows = plane.rows(&m);
+    assert!((0..3).all(|i| near(plane.vector(&rows[i]), whole[i])));
+    // and a product is that of its factors
+    let square = plane.matrix(&plus_product([[0.0; 2]; 2], &m, &m));
+    let twice = plus_product([[0.0; 3]; 3], &whole, &whole);
+    assert!((0..3).all(|i| near(square[i], twice[i])));
+    // those of space change nothing
+    assert_eq!((space.along(&x), space.vector(&x), space.matrix(&whole)), (x, x, whole));
 }

@@ -88,7 +88,7 @@ fn courses(sea: &Sea, t: f64, above: f64) -> Vec<Course> {
     let place = |k: usize| [3.0 * k as f64, -1.0 + k as f64, 0.0];
     let course = |(k, slope): (usize, V3<f64>)| {
         let mut x = place(k);
-        x[2] = LEVEL + sea.at(t, &x).elevation + above;
+        x[2] = LEVEL + sea.at(t, &x).top.elevation + above;
         let twist = k as f64;
         Course {
             x,
@@ -290,7 +290,12 @@ fn a_lattice_stands_for_the_sum() {
                 let error = check_law(&Wetted::below(surface.clone(), drag(&lattice)), t, &at);
                 assert!(error < 1e-5, "{error:e}");
                 let [a, b] = [&exact, &*lattice].map(|sea| sea.at(t, &at.x));
-                assert!((a.elevation - b.elevation).abs() < 4e-3, "{} {}", a.elevation, b.elevation);
+                assert!(
+                    (a.top.elevation - b.top.elevation).abs() < 4e-3,
+                    "{} {}",
+                    a.top.elevation,
+                    b.top.elevation
+                );
                 for i in 0..3 {
                     assert!((a.u[i] - b.u[i]).abs() < 4e-3, "{:?} {:?}", a.u, b.u);
                 }

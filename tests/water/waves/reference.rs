@@ -277,7 +277,7 @@ fn points_of_a_sea_move_as_in_the_reference() {
             for p in rows(v, "points").iter().filter(wet) {
                 let [x, y, z, t] = ["x", "y", "z", "t"].map(|k| number(&p[k]));
                 let found = sea.at(t, &[x, y, z + level]);
-                assert!((found.elevation - number(&p["eta"])).abs() < 1e-12);
+                assert!((found.top.elevation - number(&p["eta"])).abs() < 1e-12);
                 for i in 0..3 {
                     assert!((found.u[i] - list(&p[name]["u"])[i]).abs() < 1e-12);
                     assert!((found.acceleration[i] - list(&p[name]["du_dt"])[i]).abs() < 1e-12);
@@ -304,7 +304,7 @@ fn seeds_make_the_seas_of_the_reference() {
         };
         for (evaluation, near) in [(Some(Evaluation::Exact), 1e-10), (None, 1e-3 * hs)] {
             let sea = Sea::new(&spec(evaluation), 0.0, 9.81, [0.0; 3]).expect("a sea");
-            let eta = |x: f64, y: f64, t: f64| sea.at(t, &[x, y, -h]).elevation;
+            let eta = |x: f64, y: f64, t: f64| sea.at(t, &[x, y, -h]).top.elevation;
             for row in rows(case, "eta_x0") {
                 let off = eta(0.0, 0.0, number(&row["t"])) - number(&row["eta"]);
                 assert!(off.abs() < near, "{} {off:e}", sea.about());
@@ -332,7 +332,7 @@ fn seas_do_not_get_in_each_others_way() {
     let ask = |sea: &Sea, k: u32| {
         let k = f64::from(k);
         let swell = sea.at(0.7 * k, &[3.0 * k, -k, -2.0 - 0.3 * k]);
-        [swell.u, swell.acceleration, [swell.elevation, swell.slope[0], swell.rising]]
+        [swell.u, swell.acceleration, [swell.top.elevation, swell.top.slope[0], swell.top.rising]]
     };
     let seeds = [1, 2, 3];
     let alone = seeds.map(|seed| {

@@ -300,7 +300,7 @@ fn a_buoy_rides_on_long_waves() {
     let mut worst = 0.0_f64;
     for (k, t) in h.times().iter().enumerate() {
         let x = [0, 1, 2].map(|i| place[i][k]);
-        worst = worst.max((x[2] - 2.0 - sea.at(*t, &x).elevation).abs());
+        worst = worst.max((x[2] - 2.0 - sea.at(*t, &x).top.elevation).abs());
     }
     println!("off the surface by {worst:.3} m of 1.5 m");
     assert!(worst < 0.05, "{worst}");

@@ -1,57 +1,9 @@
 //! How stations and loads pass between elements and laws, which are compiled apart: through memory, a batch at a time.
 
 use super::{Gives, Joined, Law, Load, Station};
-use crate::algebra::lane::{LaneTask, Real, V3, Width, run};
+use crate::algebra::lane::{LaneTask, Real, Width, run};
 use crate::model::term::{Energy, Power};
 use std::any::Any;
-use std::cell::RefCell;
-
-/// How many numbers make a station.
-pub(super) const STATION: usize = 21;
-
-/// Number `i` of a row of numbers over lanes.
-#[inline(always)]
-fn number<R: Real>(row: &[f64], i: usize) -> R {
-    R::read(&row[i * R::LANES..])
-}
-#[inline(always)]
-fn vector<R: Real>(row: &[f64], i: usize) -> V3<R> {
-    [number(row, i), number(row, i + 1), number(row, i + 2)]
-}
-#[inline(always)]
-fn put<R: Real, const K: usize>(row: &mut [f64], i: usize, x: &[R; K]) {
-    for k in 0..K {
-        x[k].write(&mut row[(i + k) * R::LANES..]);
-    }
-}
-
-impl<R: Real> Station<R> {
-    #[inline(always)]
-    pub(super) fn write(&self, row: &mut [f64]) {
-        put(row, 0, &self.x);
-        put(row, 3, &self.v);
-        put(row, 6, &self.a);
-        put(row, 9, &self.slope);
-        put(row, 12, &self.slope_rate);
-        put(row, 15, &[self.s, self.weight, self.before, self.element, self.diameter, self.area]);
-    }
-    #[inline(always)]
-    pub(super) fn read(row: &[f64]) -> Self {
-        Station {
-            x: vector(row, 0),
-            v: vector(row, 3),
-            a: vector(row, 6),
-            slope: vector(row, 9),
-            slope_rate: vector(row, 12),
-            s: number(row, 15),
-            weight: number(row, 16),
-            before: number(row, 17),
-            element: number(row, 18),
-            diameter: number(row, 19),
-            area: number(row, 20),
-        }
-    }
-}
 
 impl<R: Real> Load<R> {
     /// Makes what laws are about to add to zero, derivatives with `TANGENT` alone: what isn't given is never read.
@@ -85,49 +37,40 @@ impl<R: Real> Load<R> {
     }
 }
 
-/// Stations and loads of a batch, one of each for every station of an element: how they pass between elements and laws, which
-/// are compiled apart.
-pub(super) struct Exchange {
-    /// The stations, number by number.
-    pub stations: Vec<f64>,
-    /// Loads over each of the carriers: lists of [`Load`].
-    loads: Vec<Box<dyn Any>>,
+/// Stations and loads of a batch, one of each for every station of an element. Laws, which are asked by virtual calls, get it without
+/// its type, and know that from the width.
+pub(super) struct Exchange<R> {
+    pub stations: Vec<Station<R>>,
+    /// What laws have put on them.
+    pub loads: Vec<Load<R>>,
     /// Whether a law has been there, and which derivatives have been given so far.
     pub loaded: bool,
     pub given: Gives,
 }
 
-/// The list of loads over a carrier.
-#[inline(always)]
-fn over<R: Real>(loads: &mut Vec<Box<dyn Any>>) -> &mut Vec<Load<R>> {
-    let place = loads.iter().position(|list| list.is::<Vec<Load<R>>>()).unwrap_or_else(|| {
-        loads.push(Box::new(Vec::<Load<R>>::new()));
-        loads.len() - 1
-    });
-    match loads[place].downcast_mut() {
-        Some(list) => list,
-        None => unreachable!("it was found by its type"),
+impl<R: Real> Exchange<R> {
+    pub fn new() -> Self {
+        Exchange { stations: Vec::new(), loads: Vec::new(), loaded: false, given: Gives::NOTHING }
     }
-}
 
-impl Exchange {
-    /// Makes room for elements of `count` stations.
-    pub(super) fn resize<R: Real>(&mut self, count: usize) {
-        self.stations.resize(count * STATION * R::LANES, 0.0);
-        over::<R>(&mut self.loads).resize(count, Load::zero());
-    }
-    /// What laws have put on the stations of an element.
+    /// With room for so many stations, on which there is no load yet.
     #[inline(always)]
-    pub(super) fn loads<R: Real>(&mut self) -> &[Load<R>] {
-        over(&mut self.loads)
+    pub fn start(&mut self, count: usize) {
+        if self.loads.len() != count {
+            self.stations.resize(count, Station::nowhere());
+            self.loads.resize(count, Load::zero());
+        }
+        (self.loaded, self.given) = (false, Gives::NOTHING);
     }
-}
 
-thread_local! {
-    // kept between calls, so that no step allocates
-    pub(super) static EXCHANGE: RefCell<Exchange> = const {
-        RefCell::new(Exchange { stations: Vec::new(), loads: Vec::new(), loaded: false, given: Gives::NOTHING })
-    };
+    /// That of a caller whose lanes are the same.
+    #[inline(always)]
+    fn of(any: &mut dyn Any) -> &mut Self {
+        match any.downcast_mut() {
+            Some(own) => own,
+            None => unreachable!("laws and elements go by the same width"),
+        }
+    }
 }
 
 /// A [`Law`] behind a virtual call that serves a whole batch.
@@ -135,11 +78,11 @@ pub(super) trait ErasedLaw: Send + Sync {
     fn label(&self) -> String;
     fn gives(&self) -> Gives;
     /// Loads a batch; `width` must be that of the element's own code.
-    fn load(&self, width: Width, t: f64, tangent: bool, x: &mut Exchange);
+    fn load(&self, width: Width, t: f64, tangent: bool, x: &mut dyn Any);
     /// The power of the loads in the first `lanes` lanes of a batch.
-    fn power(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Power;
+    fn power(&self, width: Width, t: f64, x: &mut dyn Any, lanes: usize) -> Power;
     /// The kinetic and potential energy of the stations in the first `lanes` lanes of a batch.
-    fn energy(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Energy;
+    fn energy(&self, width: Width, t: f64, x: &mut dyn Any, lanes: usize) -> Energy;
     fn local(&self, quantity: &str, t: f64, at: &Station<f64>) -> Option<f64>;
     fn timed(&self) -> bool;
     fn reach(&self, t: f64, h: f64) -> Option<f64>;
@@ -151,21 +94,40 @@ struct LoadAll<'a, L> {
     law: &'a L,
     t: f64,
     tangent: bool,
-    x: &'a mut Exchange,
+    x: &'a mut dyn Any,
 }
 
 impl<L: Law> LoadAll<'_, L> {
     #[inline(always)]
     fn all<R: Real, const TANGENT: bool>(self) {
         let (law, all) = (self.law, self.law.gives());
-        let Exchange { stations, loads, loaded, given } = self.x;
+        let Exchange::<R> { stations, loads, loaded, given } = Exchange::of(self.x);
         let gives = if TANGENT { all } else { Gives { couple: all.couple, ..Gives::NOTHING } };
         let (first, fresh) = (!*loaded, gives.without(*given));
-        for (station, out) in stations.chunks_exact(STATION * R::LANES).zip(over::<R>(loads)) {
-            out.clear::<TANGENT>(first, fresh);
-            law.load::<R, TANGENT>(self.t, &Station::read(station), out);
-        }
+        let stations = stations.iter().zip(loads.iter_mut());
+        law.load_all::<R, TANGENT>(self.t, Cleared::<_, TANGENT> { stations, first, fresh });
         (*loaded, *given) = (true, given.and(gives));
+    }
+}
+
+/// Stations and what is to be added to, cleared of what nobody has added to yet.
+struct Cleared<I, const TANGENT: bool> {
+    stations: I,
+    first: bool,
+    fresh: Gives,
+}
+
+impl<'a, R: Real, I, const TANGENT: bool> Iterator for Cleared<I, TANGENT>
+where
+    I: Iterator<Item = (&'a Station<R>, &'a mut Load<R>)>,
+{
+    type Item = (Station<R>, &'a mut Load<R>);
+    #[inline(always)]
+    fn next(&mut self) -> Option<Self::Item> {
+        let (station, out) = self.stations.next()?;
+        out.clear::<TANGENT>(self.first, self.fresh);
+        // a copy, which what is put on it can't change
+        Some((*station, out))
     }
 }
 
@@ -183,15 +145,15 @@ impl<L: Law> ErasedLaw for L {
     fn gives(&self) -> Gives {
         Law::gives(self)
     }
-    fn load(&self, width: Width, t: f64, tangent: bool, x: &mut Exchange) {
+    fn load(&self, width: Width, t: f64, tangent: bool, x: &mut dyn Any) {
         run(width, LoadAll { law: self, t, tangent, x });
     }
-    fn power(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Power {
+    fn power(&self, width: Width, t: f64, x: &mut dyn Any, lanes: usize) -> Power {
         let mut out = Power::default();
         run(width, PowerOf { law: self, t, x, lanes, out: &mut out });
         out
     }
-    fn energy(&self, width: Width, t: f64, x: &Exchange, lanes: usize) -> Energy {
+    fn energy(&self, width: Width, t: f64, x: &mut dyn Any, lanes: usize) -> Energy {
         let mut out = Energy::default();
         run(width, EnergyOf { law: self, t, x, lanes, out: &mut out });
         out
@@ -216,7 +178,7 @@ impl<L: Law> ErasedLaw for L {
 struct PowerOf<'a, L> {
     law: &'a L,
     t: f64,
-    x: &'a Exchange,
+    x: &'a mut dyn Any,
     lanes: usize,
     out: &'a mut Power,
 }
@@ -225,11 +187,10 @@ impl<L: Law> LaneTask for PowerOf<'_, L> {
     #[inline(always)]
     fn go<R: Real>(self) {
         let (mut sum, mut load) = (Power::<R>::zero(), Load::zero());
-        for row in self.x.stations.chunks_exact(STATION * R::LANES) {
-            let at = Station::read(row);
+        for at in &Exchange::<R>::of(self.x).stations {
             load.clear::<false>(true, Gives { couple: true, ..Gives::NOTHING });
-            self.law.load::<R, false>(self.t, &at, &mut load);
-            let power = self.law.power(self.t, &at, &load);
+            self.law.load::<R, false>(self.t, at, &mut load);
+            let power = self.law.power(self.t, at, &load);
             sum.dissipated = at.weight.fma(power.dissipated, sum.dissipated);
             sum.supplied = at.weight.fma(power.supplied, sum.supplied);
             sum.carried = at.weight.fma(power.carried, sum.carried);
@@ -243,7 +204,7 @@ impl<L: Law> LaneTask for PowerOf<'_, L> {
 struct EnergyOf<'a, L> {
     law: &'a L,
     t: f64,
-    x: &'a Exchange,
+    x: &'a mut dyn Any,
     lanes: usize,
     out: &'a mut Energy,
 }
@@ -252,10 +213,9 @@ impl<L: Law> LaneTask for EnergyOf<'_, L> {
     #[inline(always)]
     fn go<R: Real>(self) {
         let (mut kinetic, mut potential) = (R::zero(), R::zero());
-        for row in self.x.stations.chunks_exact(STATION * R::LANES) {
-            let at = Station::<R>::read(row);
-            kinetic = at.weight.fma(self.law.kinetic(self.t, &at), kinetic);
-            potential = at.weight.fma(self.law.potential(self.t, &at), potential);
+        for at in &Exchange::<R>::of(self.x).stations {
+            kinetic = at.weight.fma(self.law.kinetic(self.t, at), kinetic);
+            potential = at.weight.fma(self.law.potential(self.t, at), potential);
         }
         for l in 0..self.lanes {
             self.out.kinetic += kinetic.lane(l);

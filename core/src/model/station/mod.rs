@@ -45,6 +45,26 @@ pub struct Station<R> {
     pub area: R,
 }
 
+impl<R: Real> Station<R> {
+    /// A place for one that is to come.
+    fn nowhere() -> Self {
+        let (zero, none) = (R::zero(), [R::zero(); 3]);
+        Station {
+            x: none,
+            v: none,
+            a: none,
+            slope: none,
+            slope_rate: none,
+            s: zero,
+            weight: zero,
+            before: zero,
+            element: zero,
+            diameter: zero,
+            area: zero,
+        }
+    }
+}
+
 /// Force per unstretched length on a station [N/m] and what is conjugate to its slope [N], with their derivatives;
 /// `d_x[i][j] = ∂f_i/∂x_j`. Their work is `∫ (f·δr + g·δr') ds`.
 #[derive(Clone, Copy, Debug)]
@@ -162,6 +182,17 @@ pub trait Law: Send + Sync + 'static {
     }
     /// Adds the force per unstretched length at a station, and its derivatives if `TANGENT`.
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>);
+    /// The same at stations one after the other, for laws that have something to find once for all of them.
+    #[inline(always)]
+    fn load_all<'a, R: Real, const TANGENT: bool>(
+        &self,
+        t: f64,
+        stations: impl Iterator<Item = (Station<R>, &'a mut Load<R>)>,
+    ) {
+        for (at, out) in stations {
+            self.load::<R, TANGENT>(t, &at, out);
+        }
+    }
     /// The power of a load per unstretched length [W/m]. By default all of it is supplied from outside.
     #[inline(always)]
     fn power<R: Real>(&self, _t: f64, at: &Station<R>, load: &Load<R>) -> Power<R> {

@@ -1,6 +1,6 @@
 //! All stations of one part: evaluated over lanes, loaded by every law, and carried back to the nodes.
 
-use super::exchange::{EXCHANGE, Exchange, STATION};
+use super::exchange::Exchange;
 use super::{Gives, Laws, Load, Station, StationElement, Stations};
 use crate::algebra::lane::{LaneTask, Real, Width, run};
 use crate::model::node::{Node, NodeId};
@@ -24,9 +24,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     /// Adds up what is asked for.
     fn work(&self, laws: &Laws, at: &At<'_>, power: Option<&mut Power>, energy: Option<&mut Energy>) {
         let width = self.width(Width::best());
-        EXCHANGE.with_borrow_mut(|exchange| {
-            run(width, WorkAll { pool: self, laws, at, width, power, energy, exchange });
-        });
+        run(width, WorkAll { pool: self, laws, at, width, power, energy });
     }
     /// The width that is worth while for its elements.
     fn width(&self, most: Width) -> Width {
@@ -50,14 +48,16 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     }
 }
 
+/// Puts the stations of elements side by side into an exchange.
 #[inline(always)]
-fn write_stations<E: StationElement<Q, N, S>, R: Real, const Q: usize, const N: usize, const S: usize>(
+fn meet<E: StationElement<Q, N, S>, R: Real, const Q: usize, const N: usize, const S: usize>(
     p: &E::Lanes<R>,
     x: &Local<R, Q, N>,
-    exchange: &mut Exchange,
+    exchange: &mut Exchange<R>,
 ) {
-    for (k, row) in exchange.stations.chunks_exact_mut(STATION * R::LANES).enumerate() {
-        E::station(p, x, k).write(row);
+    exchange.start(S);
+    for (k, station) in exchange.stations.iter_mut().enumerate().take(S) {
+        *station = E::station(p, x, k);
     }
 }
 
@@ -67,7 +67,6 @@ struct SpreadAll<'a, 'b, 'c, E, const Q: usize, const N: usize, const S: usize> 
     at: &'a At<'a>,
     width: Width,
     out: &'b mut Assembly<'c>,
-    exchange: &'b mut Exchange,
 }
 
 impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize> LaneTask
@@ -90,24 +89,23 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     fn spread_all<R: Real, const TANGENT: bool>(self) {
         let w = self.out.weights();
         let mut blocks = Blocks::take(self.out);
-        self.exchange.resize::<R>(S);
-        let mut share = room::take(Share::zero);
+        let (mut share, mut exchange) = (room::take(Share::zero), room::take(Exchange::<R>::new));
         let batches = self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES));
         for (b, (elements, seats)) in batches.enumerate() {
             let p = E::lanes::<R>(&Batch(elements));
             let x = Seat::gather::<R>(seats, self.at);
-            write_stations::<E, R, Q, N, S>(&p, &x, self.exchange);
-            (self.exchange.loaded, self.exchange.given) = (false, Gives::NOTHING);
+            meet::<E, R, Q, N, S>(&p, &x, &mut exchange);
             for law in &self.laws.loads {
-                law.load(self.width, self.at.t, TANGENT, self.exchange);
+                law.load(self.width, self.at.t, TANGENT, &mut *exchange);
             }
-            let gives = self.exchange.given.with(&w);
-            if let Some(loads) = self.exchange.loads::<R>().first_chunk() {
+            let gives = exchange.given.with(&w);
+            if let Some(loads) = exchange.loads.first_chunk() {
                 E::spread::<R, TANGENT>(&p, &x, loads, gives, &w, &mut share);
             }
             Seat::scatter::<R, TANGENT>(seats, b * R::LANES, &share, &mut blocks, self.out);
         }
         room::give_back(share);
+        room::give_back(exchange);
         blocks.give_back(self.out);
     }
 }
@@ -120,7 +118,6 @@ struct WorkAll<'a, E, const Q: usize, const N: usize, const S: usize> {
     width: Width,
     power: Option<&'a mut Power>,
     energy: Option<&'a mut Energy>,
-    exchange: &'a mut Exchange,
 }
 
 impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize> LaneTask
@@ -128,19 +125,20 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
 {
     #[inline(always)]
     fn go<R: Real>(mut self) {
-        self.exchange.resize::<R>(S);
+        let mut exchange = room::take(Exchange::<R>::new);
         for (elements, seats) in self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES)) {
             let (p, x) = (E::lanes::<R>(&Batch(elements)), Seat::gather::<R>(seats, self.at));
-            write_stations::<E, R, Q, N, S>(&p, &x, self.exchange);
+            meet::<E, R, Q, N, S>(&p, &x, &mut exchange);
             for law in &self.laws.all {
                 if let Some(total) = &mut self.power {
-                    **total += law.power(self.width, self.at.t, self.exchange, seats.len());
+                    **total += law.power(self.width, self.at.t, &mut *exchange, seats.len());
                 }
                 if let Some(total) = &mut self.energy {
-                    **total += law.energy(self.width, self.at.t, self.exchange, seats.len());
+                    **total += law.energy(self.width, self.at.t, &mut *exchange, seats.len());
                 }
             }
         }
+        room::give_back(exchange);
     }
 }
 
@@ -172,10 +170,8 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
     }
     fn add(&self, laws: &Laws, at: &At<'_>, out: &mut Assembly<'_>) {
         if !laws.all.is_empty() {
-            EXCHANGE.with_borrow_mut(|exchange| {
-                let width = self.width(out.width());
-                run(width, SpreadAll { pool: self, laws, at, width, out, exchange });
-            });
+            let width = self.width(out.width());
+            run(width, SpreadAll { pool: self, laws, at, width, out });
         }
     }
     fn spread(&self, loads: &[Load<f64>], gives: Gives, at: &At<'_>, out: &mut Assembly<'_>) {
