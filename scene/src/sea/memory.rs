@@ -38,8 +38,9 @@ pub(super) struct Memory {
     /// The slot of each pack: the same as the last time, if what asks has moved little.
     slots: FxHashMap<Key, usize>,
     keys: Vec<Key>,
-    /// The slot of who asked last.
+    /// The slot of who asked last, and of who asked after each of them.
     last: usize,
+    after: Vec<usize>,
     pub packs: Vec<Found>,
     /// What is known of the table at each of them.
     pub stations: Vec<Stations>,
@@ -83,6 +84,7 @@ impl Memory {
             slots: FxHashMap::default(),
             keys: Vec::new(),
             last: 0,
+            after: Vec::new(),
             packs: Vec::new(),
             stations: Vec::new(),
         }))
@@ -91,27 +93,37 @@ impl Memory {
     /// The slot of a pack.
     #[inline(always)]
     pub fn slot(&mut self, key: Key) -> usize {
-        // they mostly ask in the order in which they came
-        let next = if self.last + 1 < self.keys.len() { self.last + 1 } else { 0 };
+        // they mostly ask in the same order
+        let next = self.after.get(self.last).copied().unwrap_or(0);
         self.last = if self.keys.get(next) == Some(&key) { next } else { self.slot_of(key) };
         self.last
     }
 
     #[inline(never)]
     fn slot_of(&mut self, key: Key) -> usize {
-        if let Some(&slot) = self.slots.get(&key) { slot } else { self.new_slot(key) }
+        if self.keys.get(self.last) == Some(&key) {
+            return self.last;
+        }
+        let slot = if let Some(&slot) = self.slots.get(&key) { slot } else { self.new_slot(key) };
+        if let Some(after) = self.after.get_mut(self.last) {
+            *after = slot;
+        }
+        slot
     }
 
     fn new_slot(&mut self, key: Key) -> usize {
         if self.packs.len() >= PACKS {
             self.slots.clear();
             self.keys.clear();
+            self.after.clear();
             self.packs.clear();
             self.stations.clear();
         }
         let slot = self.packs.len();
         self.slots.insert(key, slot);
         self.keys.push(key);
+        // whoever comes next is new, too
+        self.after.push(slot + 1);
         self.packs.push(Found::nothing());
         self.stations.push(Stations::default());
         slot

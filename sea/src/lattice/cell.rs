@@ -45,7 +45,8 @@ impl Cell {
         let (weights, mut out) = (&self.weights[down * SPOTS + along], [[0.0; 4]; 3]);
         let (wide, per) = (R::of(width), R::of(1.0 / width));
         for first in (0..4).step_by(R::LANES) {
-            let mut sums = [R::zero(); 3];
+            // in two chains each, which don't wait for one another
+            let mut sums = [[R::zero(); 2]; 3];
             for m in 0..8 {
                 let numbers = &corners[m / 2][8 * (m % 2) + first..];
                 let (mut of, mut turned) = (R::read(numbers), R::read(&numbers[4..]));
@@ -54,10 +55,10 @@ impl Cell {
                 }
                 for d in 0..3 {
                     let w = &weights[d][m];
-                    sums[d] = R::of(w.re).fma(of, R::of(w.im).fma(turned, sums[d]));
+                    sums[d] = [R::of(w.re).fma(of, sums[d][0]), R::of(w.im).fma(turned, sums[d][1])];
                 }
             }
-            let [f, by, bend] = sums;
+            let [f, by, bend] = [sums[0][0] + sums[0][1], sums[1][0] + sums[1][1], sums[2][0] + sums[2][1]];
             for (sum, out) in [f, per * by, per * per * bend].into_iter().zip(&mut out) {
                 sum.write(&mut out[first..]);
             }

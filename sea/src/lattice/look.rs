@@ -1,7 +1,7 @@
 //! The motion of the water at stations, over lanes.
 
 use super::cell::Spot;
-use super::stations::{Ends, Kept, Known, LANES, Row, Stations};
+use super::stations::{Ends, Kept, Known, LANES, Row, Stations, place_of};
 use super::{Lattice, SPOTS};
 use crate::axes::Axes;
 use crate::motion::{Motion, Top};
@@ -68,7 +68,7 @@ impl Lattice {
             off = along - R::read(&known.places[0]);
         }
         if known.t != t {
-            known.go_to::<R>(&kept.surface.rows, t, late, self.time);
+            known.go_to::<R>(kept.surface.about(n), t, late, self.time);
         }
         let ([elevation, steep, bend], [rising, steepening, bending]) =
             (known.read::<R, 3>(0), known.read::<R, 3>(3));
@@ -115,7 +115,7 @@ impl Lattice {
         }
         let Stations { water: known, kept, .. } = stations;
         if known.t != t {
-            known.go_to::<R>(&kept.water.rows, t, late, self.time);
+            known.go_to::<R>(kept.water.about(n), t, late, self.time);
         }
         // f, its first and its second derivative, and their rates
         let (now, rates) = (
@@ -171,13 +171,11 @@ impl LaneTask for MeetSurface<'_> {
                 }
                 (ends.spots[0][lane], known.places[0][lane]) = (next, next * *size / SPOTS as f64);
             }
+            // who stays has met the first instant as the second one
             let stays = !moved && known.n + 1.0 == n;
-            if stays {
-                ends.step(lane);
-            }
-            for instant in usize::from(stays)..2 {
-                let numbers = edge.spot(spot, sums.tops(ends.slots[lane], first + instant as i64), *size);
-                ends.rows[instant].iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = x);
+            for instant in first + i64::from(stays)..first + 2 {
+                let numbers = edge.spot(spot, sums.tops(ends.slots[lane], instant), *size);
+                ends.rows[place_of(instant)].iter_mut().zip(numbers).for_each(|(row, x)| row[lane] = x);
             }
         }
         (known.n, known.t, ends.generation) = (n, f64::NAN, generation);
@@ -243,19 +241,16 @@ impl LaneTask for Meet<'_> {
                 to[lane] = levels.get(level + 1).copied().unwrap_or(f64::INFINITY);
             }
             let stays = !moved && known.n + 1.0 == n;
-            if stays {
-                ends.step(lane);
-            }
             // nothing moves far down
             let still = spots[1] > deepest && waves.depth().is_infinite();
-            for instant in usize::from(stays)..2 {
+            for instant in first + i64::from(stays)..first + 2 {
                 let numbers: Spot = if still {
                     Spot::default()
                 } else {
-                    let corners = sums.corners(ends.slots[lane], first + instant as i64);
+                    let corners = sums.corners(ends.slots[lane], instant);
                     cell.spot::<R>([across, down], corners, width)
                 };
-                let rows = &mut ends.rows[instant];
+                let rows = &mut ends.rows[place_of(instant)];
                 for (k, [re, im, rate_re, rate_im]) in numbers.into_iter().enumerate() {
                     (rows[2 * k][lane], rows[2 * k + 1][lane]) = (re, im);
                     (rows[2 * k + 6][lane], rows[2 * k + 7][lane]) = (rate_re, rate_im);
@@ -267,6 +262,7 @@ impl LaneTask for Meet<'_> {
 }
 
 /// The cell of a spot, and its number in it.
+#[inline(always)]
 fn cell_of(spot: f64) -> (i64, usize) {
     let (spot, spots) = (spot as i64, SPOTS as i64);
     (spot.div_euclid(spots), spot.rem_euclid(spots) as usize)

@@ -76,7 +76,7 @@ pub(super) struct Ends<const CORNERS: usize, const N: usize> {
     pub spots: [Row; 2],
     /// Slots of the corners around them.
     pub slots: [[u32; CORNERS]; LANES],
-    /// What is there, number by number.
+    /// What is there, number by number, of even instants and of odd ones.
     pub rows: [[Row; N]; 2],
 }
 
@@ -92,11 +92,18 @@ impl<const CORNERS: usize, const N: usize> Ends<CORNERS, N> {
         }
     }
 
-    /// Of a lane that stays where it is while the next instant becomes the first.
-    pub fn step(&mut self, lane: usize) {
-        let [first, second] = &mut self.rows;
-        first.iter_mut().zip(second).for_each(|(first, second)| first[lane] = second[lane]);
+    /// What is at the instants before and after a time, of which the first has this number.
+    #[inline(always)]
+    pub fn about(&self, n: f64) -> [&[Row; N]; 2] {
+        let first = place_of(n as i64);
+        [&self.rows[first], &self.rows[1 - first]]
     }
+}
+
+/// Where the numbers of an instant are: the second one becomes the first as time goes on, and stays where it is.
+#[inline(always)]
+pub(super) fn place_of(instant: i64) -> usize {
+    (instant & 1) as usize
 }
 
 impl<const D: usize, const N: usize> Known<D, N> {
@@ -106,7 +113,7 @@ impl<const D: usize, const N: usize> Known<D, N> {
 
     /// Moves on to a time between the instants, which are `tau` apart [s].
     #[inline(always)]
-    pub fn go_to<R: Real>(&mut self, [first, second]: &[[Row; N]; 2], t: f64, late: f64, tau: f64) {
+    pub fn go_to<R: Real>(&mut self, [first, second]: [&[Row; N]; 2], t: f64, late: f64, tau: f64) {
         let ([a, da, b, db], [ra, rda, rb, rdb]) = (hermite(late), slopes(late));
         let (value, rate) = ([a, tau * da, b, tau * db], [ra / tau, rda, rb / tau, rdb]);
         for k in 0..N / 2 {
