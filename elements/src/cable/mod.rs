@@ -6,6 +6,7 @@
 //! - [`Torsion`] and [`Directed`]: twist, and bending with a direction, beside it on nodes that know them.
 
 mod bending_damping;
+mod building;
 mod chosen;
 mod damping;
 mod directed;
