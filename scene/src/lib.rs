@@ -17,6 +17,7 @@ mod process;
 pub mod records;
 mod reeving;
 mod responses;
+mod run;
 mod scene;
 mod scene_file;
 mod sea;
@@ -38,7 +39,8 @@ pub use process::{Channel, Process, ProcessSpec, Surroundings};
 pub use reeving::{Guide, Passage, Strand, Torsional, Winding};
 pub use responses::{RaoAngles, RaoPer, RaoPhase, RaoSpec, RaoSymmetry, RaoWaves};
 pub use ropewalk_quantity as quantity;
-pub use scene::{Analysis, GRAVITY, RangeSpec, Run, Scene, SceneError, ShapeTitles, TableSpec};
+pub use run::{Analysis, RangeSpec, Run, ShapeTitles, TableSpec};
+pub use scene::{GRAVITY, Scene, SceneError};
 pub use scene_file::{Bundled, SceneFile, SceneText};
 pub use sea::{Sea, SeaTable, Swell};
 pub use spec::{

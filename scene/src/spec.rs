@@ -9,7 +9,7 @@ use crate::controllers::Channels;
 use crate::inputs::{InputSpec, Inputs};
 use crate::marker::MarkerRef;
 use crate::reeving::Guide;
-use crate::scene::Run;
+use crate::run::Run;
 use crate::water::{Air, Water};
 use ropewalk_core::integrator::Options;
 use ropewalk_core::statics::StaticsOptions;
