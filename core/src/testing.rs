@@ -300,6 +300,7 @@ fn spread<R: Real>(at: &Station<f64>) -> Station<R> {
         element: R::of(at.element),
         diameter: R::of(at.diameter),
         area: R::of(at.area),
+        who: at.who,
     }
 }
 
@@ -386,6 +387,7 @@ mod tests {
             element: 2.0,
             diameter: 1.0,
             area: 1.0,
+            who: 0,
         };
         assert!(check_law(&Square(1.0, true), 0.0, &at) < 1e-9);
         assert!((check_law(&Square(1.01, true), 0.0, &at) - 0.01).abs() < 1e-3);

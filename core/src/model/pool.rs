@@ -177,7 +177,7 @@ impl<const M: usize> Places<M> {
     }
     /// The place of number `i`.
     #[inline(always)]
-    fn at(&self, i: usize) -> usize {
+    pub fn at(&self, i: usize) -> usize {
         match self {
             Places::From(first) => *first as usize + i,
             Places::Two(one, _) if i < M / 2 => *one as usize + i,

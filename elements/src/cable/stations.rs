@@ -73,6 +73,7 @@ impl StationElement<12, 12, 4> for CableStations {
             element: p.l,
             diameter: p.diameter,
             area: p.area,
+            who: 0,
         }
     }
 

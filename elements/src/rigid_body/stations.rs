@@ -99,6 +99,7 @@ impl StationElement<7, 6, 4> for Hull {
             element: R::zero(),
             diameter: p.diameter,
             area: p.area,
+            who: 0,
         }
     }
 

@@ -26,6 +26,7 @@ fn station(r: &mut Random, speed: f64) -> Station<f64> {
         element: 0.2,
         diameter: 0.023,
         area: 4e-4,
+        who: 0,
     }
 }
 

@@ -25,6 +25,7 @@ fn station(r: &mut Random, depth: f64, slope: V3<f64>) -> Station<f64> {
         element: 0.8,
         diameter: 2.0 * radius,
         area: PI * radius * radius,
+        who: 0,
     }
 }
 
@@ -227,6 +228,7 @@ fn partly_wet_cylinders_have_the_volumes_of_the_reference() {
                         element: 0.0,
                         diameter: 2.0 * radius,
                         area,
+                        who: 0,
                         ..station(&mut r, 0.0, [1.0, 0.0, 0.0])
                     };
                     SURFACE.wet(&at, None).share * area * weight

@@ -209,6 +209,7 @@ impl Unwinding {
             element: 0.0,
             diameter: d,
             area,
+            who: 0,
         }
     }
 }

@@ -15,6 +15,8 @@ const PACKS: usize = 4096;
 pub(super) const MOST: usize = 8;
 /// A station's pack keeps its slot while its first place stays in a cell of this size [m].
 const CELL: f64 = 16.0;
+/// In place of a cell where stations say who they are.
+const NAMED: u64 = 0;
 /// Numbers about as large as this have no places for fractions.
 const WHOLE: f64 = (3_u64 << 51) as f64;
 
@@ -148,11 +150,43 @@ impl Found {
     }
 }
 
-/// What tells stations apart: those of a body have other arc lengths, and bodies are elsewhere.
+/// What tells stations apart. Those of which nobody says who they are have other arc lengths on the same body, and bodies are
+/// elsewhere.
 #[inline(always)]
 pub(super) fn key_of<R: Real>(at: &Station<R>) -> Key {
+    if at.who > 0 {
+        return (at.who as u64, R::LANES as u64, NAMED);
+    }
     // what is added leaves the number of the cell in the last bits
     let [x, y] = [at.x[0], at.x[1]].map(|x| (x.lane(0) * (1.0 / CELL) + WHOLE).to_bits());
     let place = x.rotate_left(32) ^ y;
     (at.s.lane(0).to_bits(), at.diameter.lane(0).to_bits(), place)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_side_by_side_have_slots_of_their_own_and_keep_them_as_they_move() {
+        let none = [0.0; 3];
+        let at = |x: f64, who: usize| Station {
+            x: [x, 0.0, -5.0],
+            v: none,
+            a: none,
+            slope: [1.0, 0.0, 0.0],
+            slope_rate: none,
+            s: 2.0,
+            weight: 1.0,
+            before: 0.5,
+            element: 4.0,
+            diameter: 0.1,
+            area: 0.01,
+            who,
+        };
+        assert_ne!(key_of(&at(0.0, 1)), key_of(&at(1.0, 2)));
+        assert_eq!(key_of(&at(0.0, 1)), key_of(&at(100.0, 1)));
+        // of whom nothing is known
+        assert_ne!(key_of(&at(0.0, 0)), key_of(&at(100.0, 0)));
+    }
 }

@@ -78,6 +78,7 @@ impl Course {
             element: 1.4,
             diameter: 0.3,
             area: PI * 0.0225,
+            who: 0,
         }
     }
 }

@@ -43,6 +43,9 @@ pub struct Station<R> {
     pub diameter: R,
     /// Area of the displaced volume per length [m²].
     pub area: R,
+    /// A number that only this station of the model has, and those beside it in lanes, for laws that remember what they found; 0 if
+    /// it has none.
+    pub who: usize,
 }
 
 impl<R: Real> Station<R> {
@@ -61,6 +64,7 @@ impl<R: Real> Station<R> {
             element: zero,
             diameter: zero,
             area: zero,
+            who: 0,
         }
     }
 }

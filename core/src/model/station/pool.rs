@@ -53,12 +53,21 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
 fn meet<E: StationElement<Q, N, S>, R: Real, const Q: usize, const N: usize, const S: usize>(
     p: &E::Lanes<R>,
     x: &Local<R, Q, N>,
+    seats: &[Seat<Q, N>],
     exchange: &mut Exchange<R>,
 ) {
     exchange.start(S);
     for (k, station) in exchange.stations.iter_mut().enumerate().take(S) {
         *station = E::station(p, x, k);
+        station.who = who(seats, k);
     }
+}
+
+/// What tells a station from all others: its number, and the first velocity of its element, which no other one begins with.
+#[inline(always)]
+fn who<const Q: usize, const N: usize>(seats: &[Seat<Q, N>], k: usize) -> usize {
+    const MOST: usize = 64;
+    1 + MOST * seats[0].v.at(0) + k
 }
 
 struct SpreadAll<'a, 'b, 'c, E, const Q: usize, const N: usize, const S: usize> {
@@ -94,7 +103,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
         for (b, (elements, seats)) in batches.enumerate() {
             let p = E::lanes::<R>(&Batch(elements));
             let x = Seat::gather::<R>(seats, self.at);
-            meet::<E, R, Q, N, S>(&p, &x, &mut exchange);
+            meet::<E, R, Q, N, S>(&p, &x, seats, &mut exchange);
             for law in &self.laws.loads {
                 law.load(self.width, self.at.t, TANGENT, &mut *exchange);
             }
@@ -128,7 +137,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
         let mut exchange = room::take(Exchange::<R>::new);
         for (elements, seats) in self.pool.elements.chunks(R::LANES).zip(self.pool.seats.chunks(R::LANES)) {
             let (p, x) = (E::lanes::<R>(&Batch(elements)), Seat::gather::<R>(seats, self.at));
-            meet::<E, R, Q, N, S>(&p, &x, &mut exchange);
+            meet::<E, R, Q, N, S>(&p, &x, seats, &mut exchange);
             for law in &self.laws.all {
                 if let Some(total) = &mut self.power {
                     **total += law.power(self.width, self.at.t, &mut *exchange, seats.len());
@@ -164,7 +173,7 @@ impl<E: StationElement<Q, N, S>, const Q: usize, const N: usize, const S: usize>
             let p = E::lanes::<f64>(&Batch(std::slice::from_ref(e)));
             let x = Seat::gather::<f64>(std::slice::from_ref(seat), at);
             for k in 0..S {
-                f(&E::station(&p, &x, k));
+                f(&Station { who: who(std::slice::from_ref(seat), k), ..E::station(&p, &x, k) });
             }
         }
     }

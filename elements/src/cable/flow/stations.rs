@@ -126,6 +126,7 @@ macro_rules! stations {
                     element: g.l,
                     diameter: p.diameter,
                     area: p.area,
+                    who: 0,
                 }
             }
 
