@@ -177,7 +177,7 @@ impl<const M: usize> Places<M> {
     }
     /// The place of number `i`.
     #[inline(always)]
-    pub fn at(&self, i: usize) -> usize {
+    fn at(&self, i: usize) -> usize {
         match self {
             Places::From(first) => *first as usize + i,
             Places::Two(one, _) if i < M / 2 => *one as usize + i,

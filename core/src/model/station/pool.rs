@@ -63,11 +63,11 @@ fn meet<E: StationElement<Q, N, S>, R: Real, const Q: usize, const N: usize, con
     }
 }
 
-/// What tells a station from all others: its number, and the first velocity of its element, which no other one begins with.
+/// What tells a station from all others: its number, and where the seat of its element is in memory; two pools may have one on the
+/// same nodes.
 #[inline(always)]
 fn who<const Q: usize, const N: usize>(seats: &[Seat<Q, N>], k: usize) -> usize {
-    const MOST: usize = 64;
-    1 + MOST * seats[0].v.at(0) + k
+    seats.as_ptr() as usize + k
 }
 
 struct SpreadAll<'a, 'b, 'c, E, const Q: usize, const N: usize, const S: usize> {
