@@ -93,7 +93,13 @@ impl Responses {
 
 fn between(a: &[[f64; 2]; MOTIONS], b: &[[f64; 2]; MOTIONS], x: f64) -> [[f64; 2]; MOTIONS] {
     std::array::from_fn(|j| {
-        let ([a, lag], [b, other]) = (a[j], b[j]);
+        let ([a, mut lag], [b, mut other]) = (a[j], b[j]);
+        // what doesn't move has no lag of its own
+        match [a == 0.0, b == 0.0] {
+            [true, false] => lag = other,
+            [false, true] => other = lag,
+            _ => {}
+        }
         let turn = (other - lag + PI).rem_euclid(TAU) - PI;
         [a + x * (b - a), lag + x * turn]
     })

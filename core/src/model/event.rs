@@ -31,8 +31,9 @@ pub trait Event: Send + Sync {
     fn direction(&self) -> i8 {
         0
     }
-    /// Whether it depends on forces. Inside a step they don't follow from interpolated positions: they are then those of the
-    /// equations of motion there.
+    /// Whether it depends on forces: then it is a load over what is allowed, less one. Inside a step forces don't follow from
+    /// interpolated positions, and at its end multipliers swing about them: they are those of the equations of motion, searched
+    /// for from half of the allowed load on.
     fn of_forces(&self) -> bool {
         false
     }

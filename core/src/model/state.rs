@@ -73,6 +73,10 @@ pub struct Control {
     /// Estimated error of the last step over the tolerance, as the next one was made for it.
     #[cfg_attr(feature = "serde", serde(default))]
     pub error: f64,
+    /// By how much accelerations changed of late [1/s²], and what they added up to [1/s], relative to the part where that is
+    /// largest: over each other the pace of the motion.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub pace: [f64; 2],
 }
 
 /// Derived `Clone` for two types whose `clone_from` must not allocate: it runs at every step.
@@ -106,7 +110,8 @@ clone_in_place!(Control {
     forces,
     stages,
     stage_lambda,
-    error
+    error,
+    pace
 });
 
 /// Where terms and constraints are evaluated: slices into a state, or into a trial of an integrator.

@@ -10,6 +10,9 @@ use crate::model::term::Energy;
 use crate::solve::integrator::{Limit, StepError, restart};
 use std::sync::Arc;
 
+/// The value at half of an allowed load.
+const HALF: f64 = -0.5;
+
 /// An event that has changed something.
 pub(super) struct Fired {
     event: usize,
@@ -36,7 +39,7 @@ impl Simulation {
         let mut first: Option<(usize, f64)> = None;
         for k in 0..self.events.len() {
             let (event, before) = (self.events[k].0.clone(), self.events[k].1);
-            let after = event.value(&self.model, &self.state);
+            let after = self.value_at_end(event.as_ref());
             let crossed = match event.direction() {
                 1 => before < 0.0 && after >= 0.0,
                 -1 => before > 0.0 && after <= 0.0,
@@ -51,6 +54,16 @@ impl Simulation {
             }
         }
         first
+    }
+
+    /// The value of an event at the end of the last step.
+    fn value_at_end(&mut self, event: &dyn Event) -> f64 {
+        let value = event.value(&self.model, &self.state);
+        if !event.of_forces() || value < HALF {
+            return value;
+        }
+        self.look_inside(self.state.t, true);
+        event.value(&self.model, &self.scratch)
     }
 
     /// When an event's function changes its sign between two times with these values: by halves, or, where every look costs
@@ -123,8 +136,9 @@ impl Simulation {
             return Some(Fired { event, action, after, changed });
         }
         self.model.remember(&mut self.state);
-        for (event, value) in &mut self.events {
-            *value = event.value(&self.model, &self.state);
+        for k in 0..self.events.len() {
+            let event = self.events[k].0.clone();
+            self.events[k].1 = self.value_at_end(event.as_ref());
         }
         None
     }

@@ -1,5 +1,6 @@
 //! The generalized-α family with fixed or error-controlled steps.
 
+use super::adding::{left, left_once};
 use super::controller::{StepController, StepLaw};
 use super::convergence::{Failure, Rate};
 use super::forces::larger;
@@ -14,8 +15,7 @@ use super::workspace::{Which, Workspace};
 use crate::error::BuildError;
 use crate::model::Model;
 use crate::model::limit::Limit;
-use crate::model::node::NodeKind;
-use crate::model::state::{Control, State};
+use crate::model::state::State;
 use crate::solve::linear::SolveError;
 
 /// Integrator of the Newmark, HHT-α and generalized-α family on index-3 equations.
@@ -31,20 +31,12 @@ pub struct Alpha {
 
 /// Elements along a cable up to which Newton's tolerance doesn't depend on their number.
 const COARSE: f64 = 64.0;
-/// Steps of a horizon above which what is left of each has to be less, and above which still less.
-const FEW: f64 = 10.0;
-const MANY: f64 = 10_000.0;
-/// What counts of the error of the step before. With none, that of a slider crank at 1e-4 was 0.35 to 3.9 times its
-/// tolerance, as rounding had it.
-const MEMORY: f64 = 0.8;
+/// What Newton's method may leave with fixed steps, and once where rounding keeps that from falling.
+const FIXED: f64 = 1e-7;
+const FIXED_ONCE: f64 = 1e-5;
 /// Largest change of velocities across the constraints with the size of a step, in parts of what the tolerance allows for the
 /// horizon, and of velocities themselves where steps are fixed.
 const MOST_ACROSS: [f64; 2] = [10.0, 1e-3];
-/// What the error of a body counts for, and how much more for every radian that it turns within the horizon.
-const BODY: f64 = 2.4;
-const TURNING: f64 = 0.1;
-/// A body that turns for ever is no reason for steps without end.
-const MOST_TURNING: f64 = 100.0;
 /// Largest rotation of a body in a fixed step [rad]: from a quarter turn on a driven joint may end on another branch.
 const MOST_TURN: f64 = 1.5;
 /// A step so much smaller than another one has a much smaller error, or it isn't that of the step.
@@ -85,19 +77,19 @@ impl Alpha {
         &self.scheme
     }
 
-    /// Tolerance of what Newton's method leaves of positions, relative to the length of each part.
-    fn newton_tolerance(&self, model: &Model, h: f64) -> f64 {
+    /// What Newton's method may leave of positions, relative to the length of each part, and what it may where rounding keeps
+    /// that from falling.
+    fn newton_tolerances(&self, model: &Model, h: f64) -> [f64; 2] {
         // on short elements, what is left of an iteration strains more, and would spoil the next prediction
         let fine = (COARSE / model.finest().max(1) as f64).min(1.0).powi(2);
-        self.options.newton_tolerance
-            * fine
-            * match self.options.stepping {
-                Stepping::Fixed { .. } => 1e-7,
-                Stepping::Controlled { tolerance } => {
-                    let steps = if model.is_mechanism() { adding_up(h / self.horizon) } else { 1.0 };
-                    1e-4 * steps * tolerance.min(1e-3)
-                }
+        let asked = self.options.newton_tolerance * fine;
+        match self.options.stepping {
+            Stepping::Fixed { .. } => [asked * FIXED, asked * FIXED_ONCE],
+            Stepping::Controlled { tolerance } => {
+                let step = if model.is_mechanism() { h / self.horizon } else { 1.0 };
+                [left(step), left_once(step)].map(|left| asked * left * tolerance.min(1e-3))
             }
+        }
     }
 
     /// Rescales the auxiliary acceleration to a new step size: it stands `Δ h` away from the true one.
@@ -199,34 +191,15 @@ impl Alpha {
         let known = work.times_inertia(model, &state.at(), &state.lambda, &e, &mut rhs[..nv]);
         let solved = known.and_then(|()| work.solve(model, Which::Iteration, &mut rhs));
         // once constraints have taken out what rounding and iterations leave across them
-        self.weigh_turning(model, work, &mut rhs);
+        for body in &work.bodies {
+            let t = &work.trial;
+            body.weigh(body.counts(&t.v, &t.a, work.norms.weights(), self.horizon), &mut rhs);
+        }
         let size = work.norms.relative(&rhs[..nv]);
         let strained = work.forces.strained(&work.trial.q, &rhs[..nv], self.options.force_tolerance);
         (work.trial.d, work.trial.rhs) = (e, rhs);
         solved?;
         Ok([size, strained])
-    }
-
-    /// Counts the error of a body by how far it turns in the run: what is wrong in its own axes turns with it, and adds up
-    /// to a rate of turning that nothing brings back. Waves along a cable come and go.
-    fn weigh_turning(&self, model: &Model, work: &Workspace, e: &mut [f64]) {
-        let (v, weights) = (&work.trial.v, work.norms.weights());
-        for node in model.nodes().iter().filter(|n| n.kind.has_position()) {
-            let (turns, single) =
-                (node.kind == NodeKind::Frame, work.norms.groups[work.norms.of(node.v)].single);
-            if !turns && !single {
-                continue;
-            }
-            let (mut square, mut sum) = (0.0, 0.0);
-            // the links of a chain are held by their neighbours; and what has no inertia doesn't count
-            for i in node.dofs().skip(3).filter(|_| turns && single) {
-                square += weights[i] * v[i] * v[i];
-                sum += weights[i];
-            }
-            let rate = if sum > 0.0 { (square / sum).sqrt() } else { 0.0 };
-            let factor = BODY + (TURNING * self.horizon * rate).min(MOST_TURNING);
-            node.dofs().for_each(|i| e[i] *= factor);
-        }
     }
 
     /// Predicts and iterates a step `h`, and judges what comes of it.
@@ -246,6 +219,7 @@ impl Alpha {
         if self.stabilised(model) {
             work.trial.shift.fill(0.0);
         }
+        let [tolerance, wandering] = self.newton_tolerances(model, h);
         let newton = Newton {
             model,
             state,
@@ -253,7 +227,8 @@ impl Alpha {
             h,
             policy: if self.full(state, remedies) { NewtonPolicy::Full } else { NewtonPolicy::Modified },
             max_iterations: self.options.max_iterations,
-            tolerance: self.newton_tolerance(model, h),
+            tolerance,
+            wandering,
             force_tolerance: self.options.newton_tolerance * self.options.newton_force_tolerance(),
             stopping: self.options.stopping,
             units: self.units,
@@ -375,8 +350,13 @@ impl Alpha {
     }
 
     /// Moves the state to the end of a step `h`; what the controller remembers is still that of the step before.
-    fn accept(&self, state: &mut State, work: &mut Workspace, h: f64, rate: &Rate) {
+    fn accept(&self, model: &Model, state: &mut State, work: &mut Workspace, h: f64, rate: &Rate) {
         let order = best_order(state, h, work);
+        if model.is_linkage() {
+            let (t, norms) = (&work.trial, &work.norms);
+            let change = norms.relative_of(|i| t.aux[i] - t.aux_old[i]);
+            state.control.note_pace(h, change, norms.relative(&t.a));
+        }
         let c = &mut state.control;
         c.order = order;
         c.h_before = c.h_last;
@@ -442,20 +422,6 @@ fn jumps(state: &State, work: &Workspace) -> bool {
     last > 0.0 && last * norms.relative(&state.a) < 0.05 * before && change > 0.5 * before.max(after)
 }
 
-/// The error that the next step of a linkage is made for: the estimate passes through zero where errors don't, as
-/// accelerations ring after each change of the step, so that it counts as falling by a share at most.
-fn remembered(control: &Control, h: f64, error: f64) -> f64 {
-    let ratio = h / control.h_last;
-    // a step that was cut says nothing of one so much longer
-    if ratio <= LAW.most[0] { larger(error, MEMORY * control.error * ratio * ratio) } else { error }
-}
-
-/// The share of what may be left of positions where it adds up: in a mechanism nothing takes away what velocities have of it,
-/// `2 δ/h` for the rest of the horizon, of which a step is this part. Very many of them add up like dice.
-fn adding_up(step: f64) -> f64 {
-    (FEW * step).min(1.0) * (MANY * step).min(1.0).sqrt()
-}
-
 impl Integrator for Alpha {
     fn options(&self) -> &Options {
         &self.options
@@ -518,8 +484,9 @@ impl Integrator for Alpha {
             let (why, repeat) = match self.attempt(model, state, work, h, &remedies)? {
                 Attempt::Done { rate, error, by } if error <= steps.allowed(by) => {
                     let rings = work.forces.ring(state.control.h_last);
-                    self.accept(state, work, h, &rate);
-                    let kept = if model.is_linkage() { remembered(&state.control, h, error) } else { error };
+                    self.accept(model, state, work, h, &rate);
+                    let linkage = model.is_linkage();
+                    let kept = if linkage { state.control.remembered(h, error, LAW.most[0]) } else { error };
                     steps.accepted(&mut state.control, kept, rate.iterations, by);
                     let (iterations, rejected, limit) = (rate.iterations, steps.rejected, steps.limit);
                     return Ok(StepReport { h, iterations, rejected, error, limit, rings });

@@ -34,6 +34,8 @@ impl Failure {
 
 /// Below so many times the floor of rounding corrections wander instead of falling.
 const NOISE: f64 = 30.0;
+/// Corrections with the same matrix after which what rounding hides is left at that.
+const MOST_UNSEEN: u32 = 6;
 /// Largest expected rest that counts, in parts of the last correction: beyond, the iteration diverges.
 const MOST_REST: f64 = 1e3;
 
@@ -58,6 +60,9 @@ pub(super) struct Convergence {
     force: Option<f64>,
     /// What the last correction is expected to leave of that.
     pub force_left: f64,
+    /// What may be left of positions if that is less than what rounding leaves, and what is.
+    deep: Option<f64>,
+    left: f64,
 }
 
 impl Convergence {
@@ -76,6 +81,8 @@ impl Convergence {
             since: 0,
             force: None,
             force_left,
+            deep: (tolerance < floor).then_some(tolerance),
+            left: f64::INFINITY,
         }
     }
 
@@ -88,10 +95,13 @@ impl Convergence {
     pub fn corrected(&mut self, size: f64, force: f64) {
         self.before = std::mem::replace(&mut self.size, size);
         self.since += 1;
-        if self.since > 1 {
+        // rounding has no rate: what is left goes on falling by that of the corrections before
+        let unseen = self.deep.is_some() && self.since > 1 && self.before <= NOISE * self.floor;
+        if self.since > 1 && !unseen {
             self.theta = size / self.before;
             self.eta = self.theta / (1.0 - self.theta).max(1e-3);
         }
+        self.left = if unseen { self.theta.min(0.5) * self.left } else { size * self.eta.min(MOST_REST) };
         self.force_left = left_of(force, self.force.replace(force).filter(|_| self.since > 1));
     }
 
@@ -99,6 +109,11 @@ impl Convergence {
     pub fn positions_right(&self) -> bool {
         // a rate that wasn't seen for some steps has to be seen again before it is trusted
         let trusted = self.since > 1 || self.eta <= self.trust;
+        if let Some(deep) = self.deep
+            && self.since < MOST_UNSEEN
+        {
+            return trusted && self.left <= deep;
+        }
         trusted && self.size * self.eta.min(MOST_REST) <= self.stop || self.size <= self.floor
     }
 

@@ -1,5 +1,6 @@
 //! Time integration: schemes, Newton's method, step-size control, consistent starts.
 
+mod adding;
 mod alpha;
 mod consistent;
 mod controller;

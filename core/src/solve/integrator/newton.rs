@@ -25,10 +25,6 @@ const CAREFUL: u32 = 3;
 /// step that has only one.
 const TRUST: f64 = 0.1;
 
-/// Corrections that do no harm where nothing else is left, in parts of the tolerance: they make velocities wrong by a tenth
-/// of what the error of the run may be.
-const WANDERING: f64 = 100.0;
-
 /// What an absolute stopping test says of an iteration.
 #[derive(Clone, Copy, PartialEq)]
 enum Test {
@@ -47,6 +43,8 @@ pub(crate) struct Newton<'a> {
     pub max_iterations: u32,
     /// Tolerance of displacements, relative to the length of each part.
     pub tolerance: f64,
+    /// The same of corrections that do no harm where rounding leaves nothing else.
+    pub wandering: f64,
     /// Tolerance of what is left of the equations of motion, relative to the forces at work in each part.
     pub force_tolerance: f64,
     /// When to stop, and the units of absolute tests.
@@ -235,7 +233,7 @@ impl Newton<'_> {
     fn amplified(&self, work: &mut Workspace, it: &Iteration) -> bool {
         work.softening.is_some()
             && !it.approximate
-            && it.convergence.size <= WANDERING * self.tolerance
+            && it.convergence.size <= self.wandering
             && it.convergence.force_left <= 1.0
             && self.met_to(ROUNDINGS * self.model.rounding(), work)
     }

@@ -1,5 +1,6 @@
 //! Scratch and caches of an integration. Dropping it changes cost, never what is accepted.
 
+use super::adding::Body;
 use super::forces::Forces;
 use super::inertia::Inertia;
 use super::norm::Norms;
@@ -62,6 +63,8 @@ pub struct Workspace {
     pub(crate) has_mass: bool,
     /// What counts as large, part by part; empty before the mass matrix is known.
     pub(crate) norms: Norms,
+    /// The bodies whose errors add up.
+    pub(crate) bodies: Vec<Body>,
     /// What forces are compared with.
     pub(crate) forces: Forces,
     /// Diagonal of the mass matrix of the start.
@@ -127,6 +130,7 @@ impl Workspace {
             inertia: Inertia::default(),
             has_mass: false,
             norms: Norms::default(),
+            bodies: Vec::new(),
             forces: Forces::default(),
             mass_diagonal: Vec::new(),
             x: vec![0.0; s.n],
@@ -476,6 +480,7 @@ impl Workspace {
         }
         self.norms = Norms::new(model, &mass);
         self.norms.order(model.structure());
+        self.bodies = Body::all(model, &self.norms);
         self.forces = Forces::new(model, &self.norms);
         if total > 0.0 { Ok(()) } else { Err(SolveError::Singular(0)) }
     }

@@ -150,6 +150,15 @@ impl Statics<'_> {
             return self.unfold(state, found);
         }
         self.free.clear();
+        if !self.loose {
+            state.clone_from(&before);
+            self.loose = true;
+            if let Ok(more) = self.search(state, cold, cold, true) {
+                found.add(&more);
+                return self.unfold(state, found);
+            }
+            self.loose = false;
+        }
         if cold && self.options.stable {
             state.clone_from(&before);
             if self.creep(state, &mut found, true).is_ok()

@@ -35,6 +35,9 @@ pub struct Statics<'a> {
     pub(super) flow: Vec<(usize, usize, f64)>,
     /// Directions that nothing holds, as forces that would, in elimination order: no correction moves along them.
     pub(super) free: Vec<Vec<f64>>,
+    /// Whether tangents are singular on the way, so that all that is free is held by a trace of stiffness: a body that is laid
+    /// aslant may spin about its own axis, which isn't that of its equilibrium.
+    pub(super) loose: bool,
     /// What the last equilibrium that was found is like.
     pub(super) unstable: usize,
     pub(super) neutral: Vec<Neutral>,
@@ -93,6 +96,7 @@ impl<'a> Statics<'a> {
             flows: true,
             flow: Vec::new(),
             free: Vec::new(),
+            loose: false,
             unstable: 0,
             neutral: Vec::new(),
             doubt: None,

@@ -38,6 +38,7 @@ impl Statics<'_> {
         if !potential {
             self.prepare();
             self.free.clear();
+            self.hold_loosely();
             self.factor()?;
             out.correction = self.correction()?;
             // to judge costs more than another iteration
@@ -212,6 +213,11 @@ impl Statics<'_> {
 
     /// What each unknown weighs where eigenvalues are compared with rounding: the size of its diagonal entry.
     pub(super) fn weights(&self) -> Vec<f64> {
+        self.weights_from(1e-6)
+    }
+
+    /// The same, of at least this share of the largest of its kind.
+    pub(super) fn weights_from(&self, least: f64) -> Vec<f64> {
         let s = &self.structure;
         let diagonal = |i: usize| self.system.values[s.diagonal[i] as usize].abs();
         // positions, and what else there is: slopes, rotations, coordinates
@@ -232,7 +238,7 @@ impl Statics<'_> {
         let mut w = vec![0.0; s.n];
         for n in self.model.nodes() {
             for i in n.dofs() {
-                w[s.position[i]] = diagonal(i).max(1e-6 * largest[kind(i, n)]);
+                w[s.position[i]] = diagonal(i).max(least * largest[kind(i, n)]);
             }
         }
         w

@@ -12,6 +12,11 @@ use crate::model::twist::tangent;
 use crate::solve::linear::SolveError;
 use crate::solve::times::Phase;
 
+/// What holds all that is free where tangents are singular, in parts of its diagonal or of this share of the largest:
+/// corrections fall by as much.
+const TRACE: f64 = 1e-9;
+const LEAST: f64 = 1e-3;
+
 impl Statics<'_> {
     /// Assembles, factors and solves once: Newton's correction, velocities (as increments) and then multipliers.
     pub(super) fn newton(
@@ -48,9 +53,19 @@ impl Statics<'_> {
     fn assemble_to_solve(&mut self, state: &State, q: &[f64], lambda: &[f64], relaxed: Relaxed<'_>) {
         self.assemble(state, q, lambda, Some(relaxed), false);
         self.prepare();
-        if !self.free.is_empty() {
+        if self.loose {
+            self.hold_loosely();
+        } else if !self.free.is_empty() {
             let w = self.weights();
             self.shift(&w, MARGIN);
+        }
+    }
+
+    /// Holds what is free by a trace of stiffness, where something is.
+    pub(super) fn hold_loosely(&mut self) {
+        if self.loose {
+            let w = self.weights_from(LEAST);
+            self.shift(&w, TRACE);
         }
     }
 
@@ -120,11 +135,12 @@ impl Statics<'_> {
         }
     }
 
-    /// Largest diagonal entry of the assembled stiffness.
+    /// Largest diagonal entry of the assembled stiffness; where there is none before constraints have their forces, that of
+    /// the load over its reference length.
     pub(super) fn brace_scale(&self) -> f64 {
         let diagonal = self.structure.diagonal[..self.model.velocities()].iter();
         let largest = diagonal.map(|&p| self.system.values[p as usize].abs()).fold(0.0, f64::max);
-        largest.max(f64::MIN_POSITIVE)
+        if largest > 0.0 { largest } else { (self.worst().1 / self.model.length()).max(f64::MIN_POSITIVE) }
     }
 
     /// Velocities and accelerations of the frame at a configuration.

@@ -24,6 +24,8 @@ pub(super) struct Newton<'a> {
     pub max_iterations: u32,
     /// Tolerance of displacements, relative to the length of each part.
     pub tolerance: f64,
+    /// The same where rounding keeps corrections from falling.
+    pub wandering: f64,
     /// Tolerance of what is left of the equations of motion, relative to the forces at work in each part.
     pub force_tolerance: f64,
     /// Whether every constraint is linear, so that one iteration meets it.
@@ -71,7 +73,14 @@ impl Newton<'_> {
                 // at the floor of rounding the iteration wanders
                 return Ok(rate(1.0, 0.0));
             }
-            match factors.judge(c, self.max_iterations - iterations) {
+            let left = self.max_iterations - iterations;
+            // next to a singular position constraints hardly determine a direction
+            let wanders = |work: &mut Workspace, s: &mut Stages| {
+                size <= self.wandering && forces_right && self.constraints_hold(work, s)
+            };
+            match factors.judge(c, left) {
+                Remedy::GiveUp if wanders(work, s) => return Ok(rate(1.0, 0.0)),
+                Remedy::GoOn if left == 0 && wanders(work, s) => return Ok(rate(1.0, 0.0)),
                 Remedy::GoOn => {}
                 Remedy::GiveUp if c.grows() => return Err(Failure::newton("Newton's method diverges")),
                 Remedy::GiveUp => return Err(Failure::newton("Newton's method converges too slowly")),
