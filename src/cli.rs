@@ -427,7 +427,7 @@ pub fn exit_from(
         Command::ExportFmu(args) => commands::export_fmu::run(&args, bundled),
     };
     match done {
-        Ok(exit) => exit.code(),
+        Ok(exit) => commands::ended(exit).code(),
         Err(e @ Error::Interrupted) => {
             commands::complain(e);
             Exit::Interrupted.code()

@@ -10,7 +10,9 @@ use std::path::Path;
 /// Writes what a shell has to read to complete commands.
 pub(crate) fn completions(mut command: Command, shell: Shell) -> Result<Exit, Error> {
     let name = command.get_name().to_string();
-    clap_complete::generate(shell, &mut command, name, &mut std::io::stdout());
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut command, name, &mut text);
+    say(String::from_utf8_lossy(&text).trim_end());
     Ok(Exit::Done)
 }
 

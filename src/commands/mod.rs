@@ -36,7 +36,7 @@ mod words;
 use clap::ValueEnum;
 use ropewalk_report::{Interrupt, ProgressMode};
 use std::fmt::Display;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::sync::{Mutex, PoisonError};
 
 /// How the program ends.
@@ -62,9 +62,27 @@ impl Exit {
     }
 }
 
-/// Writes results. Whoever closes the pipe early has seen enough.
+/// Why results could not be written, the first time.
+static UNSAID: Mutex<Option<std::io::Error>> = Mutex::new(None);
+
+/// Writes results. Whoever closes the pipe early has seen enough; what else goes wrong is told at the end.
 pub(crate) fn say(text: impl Display) {
-    let _ = writeln!(std::io::stdout(), "{text}");
+    if let Err(e) = writeln!(std::io::stdout(), "{text}")
+        && e.kind() != ErrorKind::BrokenPipe
+    {
+        UNSAID.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(e);
+    }
+}
+
+/// How the program ends if it would have ended like this: it says so where results could not be written.
+pub(crate) fn ended(exit: Exit) -> Exit {
+    match UNSAID.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        Some(e) => {
+            complain(format!("error: can't write to standard output: {e}"));
+            Exit::Input
+        }
+        None => exit,
+    }
 }
 
 /// Writes to standard error.

@@ -81,6 +81,9 @@ impl Observer for Look<'_> {
     fn needs_strains(&self) -> bool {
         self.records.iter().any(|r| r.needs_strains())
     }
+    fn needs_energy(&self) -> bool {
+        self.records.iter().any(|r| r.needs_energy())
+    }
     fn sample(&mut self, s: &Sample<'_>) -> ControlFlow<()> {
         self.row.clear();
         self.records.iter().for_each(|r| r.sample(s, &mut self.row));

@@ -431,3 +431,99 @@ fn what_stiffness_changes_in_a_steady_turn() {
     assert!((limp - exact).abs() < 1e-3);
     assert!((both - stretches - bends).abs() < 0.2 * both.abs(), "{both:e} {stretches:e} {bends:e}");
 }
+
+/// A body that is free to spin about its own axis, which isn't that of its equilibrium: tangents are singular on the way.
+#[test]
+fn bodies_that_may_spin_come_to_rest_from_any_attitude() {
+    let find = |text: &str| {
+        let file = SceneFile::parse(text, "scene.toml", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let model = file.build().expect("model");
+        let mut state = model.state();
+        let mut statics = Statics::new(&model, &StaticsOptions::default()).expect("memory");
+        statics.find(&mut state, true).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let named = statics.neutral().iter().any(|n| n.what.contains("`b` turns about the axis (0"));
+        (state, named)
+    };
+    // a bob on a ball joint hangs down
+    for angle in [3.09, 2.6, 2.0, 0.4] {
+        let text = format!(
+            r#"
+            [[elements]]
+            type = "rigid_body"
+            name = "b"
+            position = [0, 0, 0]
+            angles = [0, {angle}, 0]
+            mass = 1
+            centre = [0, 0, 1]
+            inertia = [0.1, 0.1, 0.01]
+            [[constraints]]
+            type = "spherical"
+            name = "pin"
+            marker = "b"
+            [[forces]]
+            type = "gravity"
+            "#
+        );
+        let (state, named) = find(&text);
+        // the centre is where its third axis points
+        let [w, x, y, z] = [3, 4, 5, 6].map(|i| state.q[i]);
+        let axis = [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)];
+        println!("{angle}: {axis:?}, {named}");
+        assert!(size([axis[0], axis[1], axis[2] + 1.0]) < 1e-6 && named, "{angle}: {axis:?}");
+    }
+    // a buoy on a line in a current, where a soft spring against its spin hardly matters
+    let buoy = |spring: &str| {
+        format!(
+            r#"
+            [water]
+            current = [0.5, 0, 0]
+            [[elements]]
+            type = "cable"
+            name = "l"
+            points = [[0, 0, -50], [0, 0, -2]]
+            elements = 12
+            length = 48
+            section = {{ mass = 2, ea = 1e6, ei = 0, diameter = 0.03 }}
+            [[elements]]
+            type = "rigid_body"
+            name = "b"
+            position = [0, 0, -2]
+            mass = 200
+            centre = [0, 0, 0.4]
+            inertia = [20, 20, 15]
+            volume = 0.4
+            centre_of_volume = [0, 0, 0.6]
+            drag_area = 0.5
+            [[constraints]]
+            type = "spherical"
+            name = "a"
+            marker = "l.start"
+            [[constraints]]
+            type = "spherical"
+            name = "t"
+            marker = "b"
+            to = "l.end"
+            [[forces]]
+            type = "gravity"
+            [[forces]]
+            type = "buoyancy"
+            [[forces]]
+            type = "drag"
+            {spring}
+            "#
+        )
+    };
+    let ((free, named), (held, _)) = (find(&buoy("")), find(&buoy(SPRING)));
+    let off = (0..free.q.len()).map(|i| (free.q[i] - held.q[i]).abs()).fold(0.0, f64::max);
+    println!("{off:.1e} {named}");
+    assert!(off < 1e-6 && named);
+}
+
+/// Holds the buoy against spinning, and nothing else to speak of.
+const SPRING: &str = r#"
+    [[forces]]
+    type = "bushing"
+    name = "yaw"
+    marker = "b"
+    rotational_stiffness = [0, 0, 1e-3]
+    "#;

@@ -1,6 +1,6 @@
 //! Columns of CSV files.
 
-use ropewalk_scene::{file, quantity};
+use ropewalk_scene::{did_you_mean, file, quantity};
 use std::path::Path;
 
 /// A table longer than this [bytes] is surely none that drives a motion.
@@ -82,6 +82,12 @@ pub(crate) fn columns<const N: usize>(
         let mut all = (0..headings.len()).filter(|k| headings[*k].0 == *name);
         let Some(k) = all.next() else {
             if !needed {
+                // one that isn't read may be meant, unless its name is that of another
+                let others = headings.iter().filter(|h| wanted.iter().all(|w| w.name != h.0));
+                if let Some(near) = others.map(|h| h.0).find(|h| did_you_mean(h, &[name]).is_some()) {
+                    let message = format!("there is no column `{near}` to be read; did you mean `{name}`?");
+                    return Err(at(first, message));
+                }
                 continue;
             }
             let message = format!("there is no column `{name}`; the first line must be like `{example}`");

@@ -205,6 +205,9 @@ impl Constraint for Hold {
     fn nodes(&self) -> &[NodeId] {
         &self.nodes
     }
+    fn told_by(&self) -> Option<&str> {
+        Some("`axle_force` of a record of type `sheave`")
+    }
     fn behind(&self) -> &[NodeId] {
         &self.ends
     }

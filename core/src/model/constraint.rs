@@ -25,6 +25,10 @@ pub trait Constraint: Send + Sync {
     fn markers(&self) -> &[Marker];
     /// The nodes that it touches, each once.
     fn nodes(&self) -> &[NodeId];
+    /// What tells of its force, if its multipliers alone don't: they are shared by many.
+    fn told_by(&self) -> Option<&str> {
+        None
+    }
     /// The nodes behind which its rows can be eliminated whatever it becomes during a run. Left out, that is judged by its
     /// Jacobian at the start.
     fn behind(&self) -> &[NodeId] {

@@ -410,6 +410,11 @@ impl Model {
         self.linkage
     }
 
+    /// Whether that goes on without kinks: then what iterations leave has always the same sign.
+    pub(crate) fn turns_smoothly(&self) -> bool {
+        self.linkage && !self.kinked
+    }
+
     /// Number of elements of the part that is divided most finely.
     pub fn finest(&self) -> usize {
         self.finest

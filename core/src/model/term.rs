@@ -56,6 +56,15 @@ impl<R: Real> Power<R> {
     pub fn zero() -> Self {
         Power { dissipated: R::zero(), supplied: R::zero(), carried: R::zero() }
     }
+    /// A share of the way from one to another.
+    pub(crate) fn between(from: Self, to: Self, share: R) -> Self {
+        let at = |from: R, to: R| share.fma(to - from, from);
+        Power {
+            dissipated: at(from.dissipated, to.dissipated),
+            supplied: at(from.supplied, to.supplied),
+            carried: at(from.carried, to.carried),
+        }
+    }
     /// The power in one lane.
     #[inline(always)]
     pub(crate) fn lane(&self, l: usize) -> Power {

@@ -166,6 +166,8 @@ impl Simulation {
             uneven: c.uneven.clone(),
             keep_audit: c.keep_audit,
             power,
+            accounted: (c.audit, power),
+            shown: c.audit,
             events,
             previous,
             scratch,

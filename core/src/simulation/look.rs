@@ -253,6 +253,8 @@ impl Simulation {
             created: None,
             keep_audit: false,
             power: self.power,
+            accounted: (Audit::default(), self.power),
+            shown: Audit::default(),
             events: Vec::new(),
             aside: None,
             sampled: (0.0, 0),

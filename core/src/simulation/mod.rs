@@ -56,6 +56,10 @@ pub trait Observer {
     fn needs_strains(&self) -> bool {
         false
     }
+    /// Whether samples tell of the balance of energy: between steps that is drawn up anew.
+    fn needs_energy(&self) -> bool {
+        false
+    }
     /// Whether it wants to look at the strains of the motion behind the sample at time `t` [s], whatever that showed: what
     /// is recorded is the same with and without a look.
     fn wants_look(&self, _t: f64) -> bool {
@@ -140,6 +144,9 @@ pub struct Simulation {
     created: Option<f64>,
     keep_audit: bool,
     power: Power,
+    /// The balance before the last step with the power then, and the balance as it is shown.
+    accounted: (Audit, Power),
+    shown: Audit,
     events: Vec<(Arc<dyn Event>, f64)>,
     previous: State,
     scratch: State,
@@ -205,6 +212,8 @@ impl Simulation {
             created: None,
             keep_audit: true,
             power,
+            accounted: (audit, power),
+            shown: audit,
             events,
             previous,
             scratch,
@@ -368,6 +377,7 @@ impl Simulation {
             let begin = self.work.clocks.start();
             let (energy, power) = self.model.balance(&self.state.at(), &self.state.lambda);
             let h = self.state.t - self.previous.t;
+            self.accounted = (self.audit, self.power);
             self.audit.add(h, energy, self.power, power);
             self.power = power;
             self.work.clocks.stop(Phase::Audit, begin);
@@ -439,6 +449,7 @@ impl Simulation {
         };
         let failed = |source| StepError::Linear { t, source, unknown: "the accelerations for output".into() };
         found.map_err(failed)?;
+        self.show_balance(observer.needs_energy());
         let seen = observer.sample(&self.seen());
         if seen.is_break() || !observer.wants_look(t) {
             return Ok(seen);
@@ -449,9 +460,22 @@ impl Simulation {
         Ok(observer.look(&self.seen()))
     }
 
+    /// Draws up the balance of energy as it is shown: at a time inside the last step if that is `asked`.
+    fn show_balance(&mut self, asked: bool) {
+        self.shown = self.audit;
+        let [begin, now, end] = [self.previous.t, self.scratch.t, self.state.t];
+        if asked && self.keep_audit && begin < now && now < end {
+            let (before, power) = self.accounted;
+            let energy = self.model.energy(&self.scratch.at());
+            let then = Power::between(power, self.power, (now - begin) / (end - begin));
+            self.shown = before;
+            self.shown.add(now - begin, energy, power, then);
+        }
+    }
+
     /// The scratch state as it is shown to others.
     fn seen(&self) -> Sample<'_> {
-        let (model, audit) = (&*self.model, &self.audit);
+        let (model, audit) = (&*self.model, &self.shown);
         Sample { model, at: self.scratch.at(), lambda: &self.scratch.lambda, audit }
     }
 }

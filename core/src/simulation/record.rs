@@ -33,6 +33,10 @@ pub trait Record: Send + Sync {
     fn needs_strains(&self) -> bool {
         false
     }
+    /// Whether it tells of the balance of energy: between steps that is drawn up anew.
+    fn needs_energy(&self) -> bool {
+        false
+    }
     /// Appends one value per column.
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>);
 }

@@ -152,6 +152,9 @@ impl DragSpec {
 #[typetag::serde(name = "drag")]
 impl ForceSpec for DragSpec {
     fn build(&self, b: &mut Builder) -> Result<(), BuildError> {
+        for part in b.parts(&self.on)? {
+            b.acts_once("drag", &part)?;
+        }
         let air = match b.air() {
             Some(air) => Some(self.law_in(air.density, air.viscosity, air.wind()?, None)?),
             None => None,

@@ -41,6 +41,9 @@ impl Record for Balance {
             .map(|i| Column::new(format!("{}.{i}", self.name), "J"))
             .to_vec()
     }
+    fn needs_energy(&self) -> bool {
+        true
+    }
     fn sample(&self, s: &Sample<'_>, out: &mut Vec<f64>) {
         let a = s.audit;
         // what material carries in over an end is supplied from outside as well

@@ -117,6 +117,10 @@ impl RecordSpec for ReactionSpec {
             let message = format!("there is no constraint `{of}`; the constraints are {names}");
             return Err(BuildError::at("of", message));
         };
+        if let Some(other) = all[constraint].told_by() {
+            let message = format!("`{of}` has no reaction of its own: its force is the {other}");
+            return Err(BuildError::at("of", message));
+        }
         let held = all[constraint].markers().iter().rev().find_map(|m| m.on().map(|n| (n, *m)));
         let Some((node, marker)) = held else {
             return Err(BuildError::at("of", format!("constraint `{of}` holds nothing that moves")));

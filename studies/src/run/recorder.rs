@@ -334,6 +334,9 @@ impl Observer for Recorder<'_> {
     fn needs_strains(&self) -> bool {
         self.needs_strains
     }
+    fn needs_energy(&self) -> bool {
+        self.records.iter().any(|r| r.needs_energy())
+    }
     fn wants_look(&self, t: f64) -> bool {
         !self.ranges.is_empty() || self.kept.is_due(t)
     }

@@ -16,6 +16,9 @@ use std::ops::Range;
 /// What the iterations of a step may leave, in parts of the tolerance, and what those of all steps may add up to.
 const LEFT: f64 = 1e-4;
 const ADDED: f64 = 0.3;
+/// Steps of a horizon above which that of each has to be less, and above which it adds up like dice.
+const FEW: f64 = 10.0;
+const MANY: f64 = 10_000.0;
 /// What a single iteration may leave that rounding keeps from falling.
 const WANDERING: f64 = 0.1;
 
@@ -23,6 +26,8 @@ const WANDERING: f64 = 0.1;
 /// another one.
 const BODY: f64 = 2.7;
 const TURNING: f64 = 0.1;
+/// Over the sine of the angle between a rate of turning and its own rate: from here on an axis turns.
+const PLANE: f64 = 100.0;
 /// A body that turns for ever is no reason for steps without end.
 const MOST_TURNING: f64 = 100.0;
 
@@ -36,6 +41,11 @@ const LATELY: f64 = 20.0;
 /// velocities for the rest of it, step by step.
 pub(super) fn left(step: f64) -> f64 {
     (ADDED * step * step).min(LEFT)
+}
+
+/// The same where latches, friction and material that runs cut steps and leave others: it adds up like dice.
+pub(super) fn left_like_dice(step: f64) -> f64 {
+    LEFT * (FEW * step).min(1.0) * (MANY * step).min(1.0).sqrt()
 }
 
 /// The same of one step alone.
@@ -82,7 +92,8 @@ impl Body {
         let (w, dw): ([f64; 3], [f64; 3]) = (three(v), three(a));
         let norm = |x: [f64; 3]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         let all = norm(w) * norm(dw);
-        let across = if all > 0.0 { norm(cross(&w, &dw)) / all } else { 0.0 };
+        // none in a plane but for rounding
+        let across = if all > 0.0 { (PLANE * norm(cross(&w, &dw)) / all).min(1.0) } else { 0.0 };
         BODY + (TURNING * horizon * rate * across).min(MOST_TURNING)
     }
 

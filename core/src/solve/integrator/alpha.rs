@@ -1,6 +1,6 @@
 //! The generalized-α family with fixed or error-controlled steps.
 
-use super::adding::{left, left_once};
+use super::adding::{left, left_like_dice, left_once};
 use super::controller::{StepController, StepLaw};
 use super::convergence::{Failure, Rate};
 use super::forces::larger;
@@ -87,7 +87,8 @@ impl Alpha {
             Stepping::Fixed { .. } => [asked * FIXED, asked * FIXED_ONCE],
             Stepping::Controlled { tolerance } => {
                 let step = if model.is_mechanism() { h / self.horizon } else { 1.0 };
-                [left(step), left_once(step)].map(|left| asked * left * tolerance.min(1e-3))
+                let left = if model.turns_smoothly() { left(step) } else { left_like_dice(step) };
+                [left, left_once(step)].map(|left| asked * left * tolerance.min(1e-3))
             }
         }
     }

@@ -43,6 +43,8 @@ const MOST_REST: f64 = 1e3;
 pub(super) struct Convergence {
     /// What may be left of positions, relative to the length of each part.
     pub stop: f64,
+    /// The same below which an iteration is not given up.
+    pub enough: f64,
     /// What rounding leaves of corrections.
     pub floor: f64,
     /// Largest expected rest that is believed where the present matrix has made only one correction.
@@ -72,6 +74,7 @@ impl Convergence {
         let (stop, force_left) = (tolerance.max(floor), f64::INFINITY);
         Convergence {
             stop,
+            enough: stop,
             floor,
             trust,
             eta,
@@ -137,7 +140,7 @@ impl Convergence {
         let theta = self.theta;
         theta >= 2.0
             || (theta > 0.9 && self.since > 4)
-            || (theta < 1.0 && self.size * theta.powi(left as i32) / (1.0 - theta) > self.stop)
+            || (theta < 1.0 && self.size * theta.powi(left as i32) / (1.0 - theta) > self.enough)
     }
 
     /// Whether the last correction is too large to be met by so many more with the same matrix.

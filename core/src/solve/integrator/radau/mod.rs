@@ -98,7 +98,7 @@ impl Radau {
         };
         let time = VELOCITY * self.horizon;
         let controlled = matches!(self.options.stepping, Stepping::Controlled { .. });
-        let left = match model.is_mechanism() {
+        let left = match model.turns_smoothly() {
             _ if controlled && self.spins(model, state) => SPINNING,
             true if controlled => (HELD * h / self.horizon).clamp(SPINNING, ITERATION),
             _ => ITERATION,
@@ -112,7 +112,7 @@ impl Radau {
             policy: self.options.newton,
             max_iterations: self.options.max_iterations.min(MOST_ITERATIONS),
             tolerance: asked * left,
-            wandering: asked * ITERATION,
+            wandering: asked * if model.turns_smoothly() { left.max(ITERATION) } else { left },
             force_tolerance: self.options.newton_tolerance * self.options.newton_force_tolerance(),
             linear_constraints: !model.is_mechanism(),
         };

@@ -38,6 +38,7 @@ impl Newton<'_> {
         let eta = if control.h_last > 0.0 { control.eta.max(1e-3).powf(0.8) } else { 1.0 };
         let mut convergence =
             Convergence::new(self.tolerance, work.norms.rounding(), f64::INFINITY, eta, control.theta);
+        convergence.enough = convergence.enough.max(self.wandering);
         let mut factors = Factors::new(self.policy);
         self.predict(s);
         if factors.always || !s.factored_for(self.h) || control.worn() {
