@@ -19,8 +19,9 @@ const ADDED: f64 = 0.3;
 /// Steps of a horizon above which that of each has to be less, and above which it adds up like dice.
 const FEW: f64 = 10.0;
 const MANY: f64 = 10_000.0;
-/// What a single iteration may leave that rounding keeps from falling.
-const WANDERING: f64 = 0.1;
+/// How many times as much a single one may leave that rounding keeps from falling: it makes velocities wrong by a tenth of what the
+/// error of the run may be.
+const WANDERING: f64 = 100.0;
 
 /// What the error of a body counts for, and how much more for every radian that it turns within the horizon, its axis about
 /// another one.
@@ -50,7 +51,7 @@ pub(super) fn left_like_dice(step: f64) -> f64 {
 
 /// The same of one step alone.
 pub(super) fn left_once(step: f64) -> f64 {
-    WANDERING * step.min(1.0)
+    WANDERING * left_like_dice(step)
 }
 
 /// Node by node, a body whose error adds up: what it is wrong by in its own axes turns with it. Waves along a cable come and

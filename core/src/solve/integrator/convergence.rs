@@ -32,10 +32,12 @@ impl Failure {
     }
 }
 
+/// What rounding leaves of corrections, in parts of that of positions.
+pub(super) const FLOOR: f64 = 4.0;
 /// Below so many times the floor of rounding corrections wander instead of falling.
 const NOISE: f64 = 30.0;
 /// Corrections with the same matrix after which what rounding hides is left at that.
-const MOST_UNSEEN: u32 = 6;
+const MOST_UNSEEN: u32 = 3;
 /// Largest expected rest that counts, in parts of the last correction: beyond, the iteration diverges.
 const MOST_REST: f64 = 1e3;
 
@@ -70,7 +72,7 @@ pub(super) struct Convergence {
 impl Convergence {
     /// Stops at `tolerance`, or where rounding of positions leaves more.
     pub fn new(tolerance: f64, rounding: f64, trust: f64, eta: f64, theta: f64) -> Self {
-        let floor = 4.0 * rounding;
+        let floor = FLOOR * rounding;
         let (stop, force_left) = (tolerance.max(floor), f64::INFINITY);
         Convergence {
             stop,

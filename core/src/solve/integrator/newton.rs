@@ -5,7 +5,7 @@
 //! grow as the step shrinks (Bottasso, Bauchau & Cardona 2007), and β = 0 is no special case.
 
 use super::consistent::ROUNDINGS;
-use super::convergence::{Convergence, Failure, Rate};
+use super::convergence::{Convergence, FLOOR, Failure, Rate};
 use super::factors::{Factors, Remedy};
 use super::options::NewtonPolicy;
 use super::scales::{Stopping, Units};
@@ -140,8 +140,12 @@ impl Newton<'_> {
     /// Iterates from the prediction in `work.trial.aux` and `work.trial.lambda`. `eta` is what the last step expects the
     /// remaining error to be.
     pub fn solve(&self, work: &mut Workspace, eta: f64) -> Result<Rate, Failure> {
+        let rounding = work.norms.rounding();
+        // next to a singular position rounding is amplified: to go on below it would only wander
+        let redundant = work.softening.is_some();
+        let tolerance = if redundant { self.tolerance.max(FLOOR * rounding) } else { self.tolerance };
         let mut it = Iteration {
-            convergence: Convergence::new(self.tolerance, work.norms.rounding(), TRUST, eta, 0.0),
+            convergence: Convergence::new(tolerance, rounding, TRUST, eta, 0.0),
             factors: Factors::new(self.policy),
             kinks: self.leaps && self.model.kinked(),
             approximate: false,
