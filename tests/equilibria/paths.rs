@@ -1,11 +1,12 @@
 //! Which equilibrium a path of loads leads to: buckling, limit points, loads without potential, free directions, guesses
 //! that are far off.
 
-use crate::common::{data, number};
+use crate::common::{data, number, size};
 use ropewalk::scene::Format;
 use ropewalk::studies::run::CriticalLoad;
 use ropewalk::{Error, History, SceneFile, simulate};
-use ropewalk_core::statics::CriticalKind;
+use ropewalk_core::V3;
+use ropewalk_core::statics::{CriticalKind, Statics, StaticsOptions};
 
 /// Runs a scene with other parameters.
 fn run(text: &str, set: &[String]) -> Result<History, Error> {
@@ -149,6 +150,58 @@ fn columns_buckle_whatever_the_steps() {
                 }
             }
         }
+    }
+}
+
+/// In directions of no axis rounding bends the straight path towards the one that branches off: the critical load was lost, and the
+/// run failed.
+#[test]
+fn columns_buckle_in_whatever_direction_they_stand() {
+    let mut first = None;
+    for [x, y, z] in
+        [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [1e-3, 0.0, 1.0], [0.37, 0.31, 0.88], [-0.6, 0.2, 0.5]]
+    {
+        let length = size([x, y, z]);
+        let way: V3<f64> = [x / length, y / length, z / length];
+        let force = way.map(|x| -3.0 * x);
+        let text = format!(
+            r#"
+            gravity = [0, 0, 0]
+            [[elements]]
+            type = "cable"
+            name = "c"
+            points = [[0, 0, 0], {way:?}]
+            elements = 16
+            section = {{ mass = 1, ea = 1e6, ei = 1 }}
+            [[constraints]]
+            type = "clamp"
+            name = "s"
+            marker = "c.start"
+            [[forces]]
+            type = "point_force"
+            marker = "c.end"
+            force = {force:?}
+            time = {{ table = {{ t = [0, 2], value = [0, 2] }} }}
+            "#
+        );
+        let file = SceneFile::parse(&text, "column", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let model = file.build().expect("model");
+        let mut state = model.state();
+        let mut statics = Statics::new(&model, &StaticsOptions::default()).expect("memory");
+        statics.find(&mut state, true).unwrap_or_else(|e| panic!("{e}"));
+        for step in 1..=12 {
+            statics.follow(&mut state, 0.1 * f64::from(step)).unwrap_or_else(|e| panic!("{way:?}: {e}"));
+        }
+        let loads: Vec<f64> = statics.critical().iter().map(|c| c.t).collect();
+        let end = model.parts()[0].point(1.0, &state.at()).expect("its end").0;
+        let along: f64 = (0..3).map(|i| end[i] * way[i]).sum();
+        let aside = size(std::array::from_fn(|i| end[i] - along * way[i]));
+        println!("{way:?}: {loads:?}, end at {along} along and {aside} aside");
+        // clamped and free: π²/4 EI/l²
+        let exact = std::f64::consts::PI.powi(2) / 12.0;
+        assert!(loads.len() == 1 && (loads[0] / exact - 1.0).abs() < 2e-5, "{loads:?}");
+        let [one, two] = *first.get_or_insert([along, aside]);
+        assert!((along - one).abs() < 1e-6 && (aside - two).abs() < 1e-6);
     }
 }
 

@@ -59,8 +59,19 @@ pub(super) fn left_once(step: f64) -> f64 {
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     dofs: Range<usize>,
-    /// Whether nothing holds its attitude.
-    spins: bool,
+    /// How its turning counts.
+    turning: Turning,
+}
+
+/// How the turning of a body counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Turning {
+    /// It doesn't: it is one of many, or its attitude is held where steps don't leave energy behind.
+    Not,
+    /// Where its axis turns.
+    Axis,
+    /// At all.
+    Any,
 }
 
 impl Body {
@@ -73,7 +84,12 @@ impl Body {
         let body = |(n, held): (&Node, bool)| {
             let single = n.kind.has_position() && norms.groups[norms.of(n.v)].single;
             let turns = n.kind == NodeKind::Frame;
-            (turns || single).then(|| Body { dofs: n.dofs(), spins: turns && single && !held })
+            let turning = match (turns && single, model.is_linkage(), held) {
+                (false, ..) | (true, true, true) => Turning::Not,
+                (true, true, false) => Turning::Axis,
+                (true, false, _) => Turning::Any,
+            };
+            (turns || single).then(|| Body { dofs: n.dofs(), turning })
         };
         model.nodes().iter().zip(held).filter_map(body).collect()
     }
@@ -81,7 +97,7 @@ impl Body {
     /// What its error counts for at these velocities and accelerations. An axis that turns makes of errors a rate of turning
     /// that nothing brings back.
     pub fn counts(&self, v: &[f64], a: &[f64], weights: &[f64], horizon: f64) -> f64 {
-        if !self.spins {
+        if self.turning == Turning::Not {
             return BODY;
         }
         let turning = self.dofs.clone().skip(3);
@@ -93,9 +109,13 @@ impl Body {
         let (w, dw): ([f64; 3], [f64; 3]) = (three(v), three(a));
         let norm = |x: [f64; 3]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         let all = norm(w) * norm(dw);
-        // none in a plane but for rounding
-        let across = if all > 0.0 { (PLANE * norm(cross(&w, &dw)) / all).min(1.0) } else { 0.0 };
-        BODY + (TURNING * horizon * rate * across).min(MOST_TURNING)
+        let share = match self.turning {
+            Turning::Any => 1.0,
+            // none in a plane but for rounding
+            _ if all > 0.0 => (PLANE * norm(cross(&w, &dw)) / all).min(1.0),
+            _ => 0.0,
+        };
+        BODY + (TURNING * horizon * rate * share).min(MOST_TURNING)
     }
 
     /// Multiplies its entries.

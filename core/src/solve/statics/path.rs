@@ -31,6 +31,18 @@ const STEPS: u32 = 5000;
 const FAR: f64 = 0.05;
 const UNEXPLAINED: f64 = 0.5;
 
+/// Step from which on another path may be what bends this one; most directions in which others may branch off at once.
+const BRANCHES: f64 = 1e-5;
+const MOST_BRANCHES: usize = 3;
+/// What the load may do along such a direction, in parts of what it could.
+const ACROSS: f64 = 1e-6;
+
+/// Directions in which other paths branch off, as they are held: behind those that were held before.
+struct Branches {
+    before: usize,
+    held: usize,
+}
+
 /// The way that is to be gone.
 #[derive(Clone, Copy)]
 pub(super) struct Way {
@@ -63,6 +75,7 @@ impl Statics<'_> {
             Err(e) => return Err(lost(self, state, &e.to_string())),
         };
         let mut ds = FIRST.min((end - state.t).abs() / way.span);
+        let mut branches = Branches { before: self.free.len(), held: 0 };
         for _ in 0..STEPS {
             if self.is_over() {
                 break;
@@ -79,6 +92,9 @@ impl Statics<'_> {
             }
             let Some((next, iterations)) = self.step(&here, ds, way) else {
                 ds *= 0.5;
+                if ds < BRANCHES && self.hold_branches(&mut here, &mut branches, way) {
+                    ds = FIRST * BRANCHES.sqrt();
+                }
                 if ds < SHORTEST {
                     *state = here.state;
                     let why = "the path of equilibria can't be followed any further";
@@ -122,6 +138,36 @@ impl Statics<'_> {
         }
         *state = here.state;
         Err(self.fail(state, "the path of equilibria goes on for ever", found.iterations))
+    }
+
+    /// Next to a bifurcation rounding bends the path towards the one that branches off. Holds the softest direction, or one
+    /// more, if the load does nothing along it, and takes the tangent anew; `false` if it is no bifurcation.
+    fn hold_branches(&mut self, here: &mut Point, branches: &mut Branches, way: Way) -> bool {
+        let rate = self.assemble_with_rate(&here.state, None, way);
+        let w = self.weights();
+        self.shift(&w, MARGIN);
+        let more = branches.held + 1;
+        if more > MOST_BRANCHES || self.factor().is_err() {
+            return false;
+        }
+        let Ok(lowest) = self.lowest(&w, more) else { return false };
+        let (nv, position) = (self.model.velocities(), &self.structure.position);
+        let across = |x: &Vec<f64>| {
+            let along: f64 = (0..nv).map(|i| x[position[i]] * rate[i]).sum();
+            let size = |x: &mut dyn Iterator<Item = f64>| x.map(|x| x * x).sum::<f64>().sqrt();
+            along.abs() <= ACROSS * size(&mut x.iter().copied()) * size(&mut rate[..nv].iter().copied())
+        };
+        if !lowest.iter().all(across) {
+            return false;
+        }
+        branches.held = more;
+        self.free.truncate(branches.before);
+        self.free.extend(lowest.iter().map(|x| self.weighed(&w, x)).collect::<Vec<_>>());
+        match self.point(here.state.clone(), None, way) {
+            Ok(point) => *here = point,
+            Err(_) => return false,
+        }
+        true
     }
 
     /// The stable equilibrium at the end of the load, a step `ds` ahead, if it is where the tangent leads.
