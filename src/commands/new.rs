@@ -32,6 +32,14 @@ pub(crate) fn new(args: &NewArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
         let name = args.name.display().to_string();
         return Err(Fault::new(format!("{} is no name for a scene", quoted(&name))).into());
     }
+    let extension = text.format().extension();
+    if path.extension().is_none_or(|own| !own.eq_ignore_ascii_case(extension)) {
+        let message = format!("{} is written in the format of .{extension} files", quoted(&args.from));
+        let other = path.with_extension(extension);
+        return Err(Fault::new(message)
+            .with_help(format!("name the new scene `{}`", other.display()))
+            .into());
+    }
     let mut file = File::create_new(&path).map_err(|e| match e.kind() {
         ErrorKind::AlreadyExists => Error::from(
             Fault::new(format!("there is `{}` already", path.display()))

@@ -535,3 +535,27 @@ fn stopped_by(signal: &str, name: &str, code: i32) {
         assert!(folder.path().join("out").join(file).exists(), "{file}");
     }
 }
+
+#[test]
+fn a_new_scene_keeps_the_format_of_the_one_it_comes_from() {
+    let folder = folder();
+    let said = run(folder.path(), &["new", "own.json", "--from", "swing.toml"]);
+    assert_eq!(said.code, Some(2));
+    assert!(said.stderr.contains("name the new scene `own.toml`"), "{}", said.stderr);
+    assert!(!folder.path().join("own.json").exists());
+}
+
+/// On a full disk results were cut off without a word.
+#[test]
+#[cfg(target_os = "linux")]
+fn what_cannot_be_written_to_standard_output_is_an_error() {
+    let folder = folder();
+    for args in [vec!["schema"], vec!["list"], vec!["completions", "bash"]] {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").expect("a device that is full");
+        let done =
+            program(folder.path(), &args).stdout(full).stderr(Stdio::piped()).output().expect("it runs");
+        let told = String::from_utf8_lossy(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{args:?}: {told}");
+        assert!(told.contains("can't write to standard output"), "{args:?}: {told}");
+    }
+}

@@ -285,7 +285,8 @@ fn a_run_without_a_page_pays_for_none() {
     let outcome = ropewalk::run(&file, &options, &mut |_| {}).unwrap();
     assert!(outcome.page.is_none() && outcome.pictures.is_empty());
     let shapes = fs::read_to_string(folder.path().join("out/shapes.csv")).unwrap();
-    assert!(shapes.lines().nth(1).unwrap().ends_with(",NaN,NaN"), "nothing was measured along the cable");
+    // what the guide says of shapes holds without a page as well
+    assert!(!shapes.contains("NaN"), "{shapes}");
 }
 
 #[test]

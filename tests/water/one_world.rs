@@ -106,8 +106,10 @@ fn gravity_counts_once_and_is_one() {
         [[forces]]
         type = "gravity"
         "#;
-    let twice = refused(&format!("{ball}\n[[forces]]\ntype = \"gravity\"\n"));
-    assert!(twice.contains("`gravity` acts on `ball` twice"), "{twice}");
+    for kind in ["gravity", "buoyancy", "drag"] {
+        let twice = refused(&format!("{ball}{}", format!("\n[[forces]]\ntype = \"{kind}\"\n").repeat(2)));
+        assert!(twice.contains(&format!("`{kind}` acts on `ball` twice")), "{twice}");
+    }
     // where older scenes had it
     for kind in ["gravity", "buoyancy"] {
         let old = format!(

@@ -111,3 +111,22 @@ fn by_the_limits_of_long_waves_a_vessel_goes_with_the_water() {
         }
     }
 }
+
+/// Of what a vessel doesn't do at all in head seas the lag means nothing: on both sides of it sway is the same, mirrored.
+#[test]
+fn responses_to_either_side_of_a_heading_without_one_are_mirrored() {
+    use std::f64::consts::{FRAC_PI_4, PI};
+    let headings = vec![0.0, FRAC_PI_4, 2.0 * PI - FRAC_PI_4];
+    let sway = |amplitude: f64| vec![[1.0, amplitude, 1.0, 0.0, 0.0, 0.0]];
+    let lag = |sway: f64| vec![[0.5, sway, 0.0, 0.0, 0.0, 0.0]];
+    for meaningless in [0.0, 1.0, 2.5, -3.0] {
+        let amplitude = [sway(0.0), sway(0.8), sway(0.8)];
+        let lags = [lag(meaningless), lag(1.2), lag(1.2 + PI)];
+        let table = Responses::new(headings.clone(), vec![0.5], &amplitude, &lags).expect("responses");
+        let [port, starboard] = [0.3, -0.3].map(|relative| table.at(relative, 0.5)[1]);
+        let part = |[amplitude, lag]: [f64; 2]| [amplitude * lag.cos(), amplitude * lag.sin()];
+        let ([a, b], [c, d]) = (part(port), part(starboard));
+        assert!((a + c).abs() < 1e-12 && (b + d).abs() < 1e-12, "{port:?} {starboard:?}");
+        assert!((port[0] - 0.8 * 0.3 / FRAC_PI_4).abs() < 1e-12);
+    }
+}

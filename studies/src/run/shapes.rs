@@ -64,11 +64,11 @@ impl Line {
         Line { part: part.to_string(), s, x, v: Vec::new(), values: [tensions, curvatures, Vec::new()] }
     }
 
-    /// The line of a part, with what is measured along it if that is wanted.
-    fn of_part(model: &Model, part: &dyn Part, at: &At<'_>, lambda: &[f64], measure: bool) -> Self {
+    /// The line of a part, with what is measured along it.
+    fn of_part(model: &Model, part: &dyn Part, at: &At<'_>, lambda: &[f64]) -> Self {
         let (x, mut s) = (part.centre_line(at), part.arc_lengths(at));
         let mut line = Line { part: part.name().to_string(), x, ..Line::default() };
-        if measure && s.len() == line.x.len() {
+        if s.len() == line.x.len() {
             let v = |s: &f64| part.point(*s, at).map_or([f64::NAN; 3], |(_, v)| v);
             line.v = s.iter().map(v).collect();
             if let Some(known) = part.line() {
@@ -99,12 +99,10 @@ impl Shape {
         Shape { t, is_drawn: true, lines: Vec::new(), bodies: Vec::new(), forces: Vec::new() }
     }
 
-    /// All parts of a model that have a line; with a scenery, what is measured along them too, all bodies, and all forces,
-    /// with the multipliers `lambda` of constraints; without those neither forces nor what joints carry.
+    /// All parts of a model that have a line, with what is measured along them; with a scenery all bodies too, and all forces, with
+    /// the multipliers `lambda` of constraints; without those neither forces nor what joints carry.
     pub(crate) fn of(model: &Model, at: &At<'_>, lambda: &[f64], scenery: Option<&Scenery>) -> Self {
-        let line = |part: &std::sync::Arc<dyn Part>| {
-            Line::of_part(model, part.as_ref(), at, lambda, scenery.is_some())
-        };
+        let line = |part: &std::sync::Arc<dyn Part>| Line::of_part(model, part.as_ref(), at, lambda);
         let lines = model.parts().iter().map(line).filter(|line| !line.x.is_empty()).collect();
         let bodies = scenery.map_or_else(Vec::new, |scenery| scenery.poses(model, at));
         let known = scenery.filter(|_| lambda.len() == model.multipliers());
