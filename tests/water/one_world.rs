@@ -106,10 +106,21 @@ fn gravity_counts_once_and_is_one() {
         [[forces]]
         type = "gravity"
         "#;
-    for kind in ["gravity", "buoyancy", "drag"] {
+    for kind in ["gravity", "buoyancy"] {
         let twice = refused(&format!("{ball}{}", format!("\n[[forces]]\ntype = \"{kind}\"\n").repeat(2)));
         assert!(twice.contains(&format!("`{kind}` acts on `ball` twice")), "{twice}");
     }
+    let cable = r#"
+        [water]
+        [[elements]]
+        type = "cable"
+        name = "rope"
+        points = [[0, 0, 0], [1, 0, 0]]
+        elements = 2
+        section = { mass = 1, ea = 1e4, diameter = 0.1 }
+        "#;
+    let twice = refused(&format!("{cable}{}", "[[forces]]\ntype = \"drag\"\n".repeat(2)));
+    assert!(twice.contains("`drag` acts on `rope` twice"), "{twice}");
     // where older scenes had it
     for kind in ["gravity", "buoyancy"] {
         let old = format!(

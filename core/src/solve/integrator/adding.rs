@@ -23,9 +23,9 @@ const MANY: f64 = 10_000.0;
 /// error of the run may be.
 const WANDERING: f64 = 100.0;
 
-/// What the error of a body counts for, and how much more for every radian that it turns within the horizon, its axis about
-/// another one.
-const BODY: f64 = 2.7;
+/// What the error of a body counts for, in a linkage and elsewhere, and how much more for every radian that it turns within the
+/// horizon.
+const BODY: [f64; 2] = [2.7, 2.4];
 const TURNING: f64 = 0.1;
 /// Over the sine of the angle between a rate of turning and its own rate: from here on an axis turns.
 const PLANE: f64 = 100.0;
@@ -59,6 +59,8 @@ pub(super) fn left_once(step: f64) -> f64 {
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     dofs: Range<usize>,
+    /// What its error counts for at least.
+    least: f64,
     /// How its turning counts.
     turning: Turning,
 }
@@ -81,6 +83,7 @@ impl Body {
         for c in model.constraints().iter().filter(|c| c.rows().contains(&RowKind::Direction)) {
             c.nodes().iter().for_each(|k| held[k.0 as usize] = true);
         }
+        let least = BODY[usize::from(!model.is_linkage())];
         let body = |(n, held): (&Node, bool)| {
             let single = n.kind.has_position() && norms.groups[norms.of(n.v)].single;
             let turns = n.kind == NodeKind::Frame;
@@ -89,7 +92,7 @@ impl Body {
                 (true, true, false) => Turning::Axis,
                 (true, false, _) => Turning::Any,
             };
-            (turns || single).then(|| Body { dofs: n.dofs(), turning })
+            (turns || single).then(|| Body { dofs: n.dofs(), least, turning })
         };
         model.nodes().iter().zip(held).filter_map(body).collect()
     }
@@ -98,7 +101,7 @@ impl Body {
     /// that nothing brings back.
     pub fn counts(&self, v: &[f64], a: &[f64], weights: &[f64], horizon: f64) -> f64 {
         if self.turning == Turning::Not {
-            return BODY;
+            return self.least;
         }
         let turning = self.dofs.clone().skip(3);
         // what has no inertia doesn't count
@@ -115,7 +118,7 @@ impl Body {
             _ if all > 0.0 => (PLANE * norm(cross(&w, &dw)) / all).min(1.0),
             _ => 0.0,
         };
-        BODY + (TURNING * horizon * rate * share).min(MOST_TURNING)
+        self.least + (TURNING * horizon * rate * share).min(MOST_TURNING)
     }
 
     /// Multiplies its entries.

@@ -230,6 +230,7 @@ impl Alpha {
             max_iterations: self.options.max_iterations,
             tolerance,
             wandering,
+            deep: model.turns_smoothly(),
             force_tolerance: self.options.newton_tolerance * self.options.newton_force_tolerance(),
             stopping: self.options.stopping,
             units: self.units,

@@ -43,6 +43,8 @@ pub(crate) struct Newton<'a> {
     pub max_iterations: u32,
     /// Tolerance of displacements, relative to the length of each part.
     pub tolerance: f64,
+    /// Whether to go on to that below rounding of positions.
+    pub deep: bool,
     /// The same of corrections that do no harm where rounding leaves nothing else.
     pub wandering: f64,
     /// Tolerance of what is left of the equations of motion, relative to the forces at work in each part.
@@ -142,8 +144,8 @@ impl Newton<'_> {
     pub fn solve(&self, work: &mut Workspace, eta: f64) -> Result<Rate, Failure> {
         let rounding = work.norms.rounding();
         // next to a singular position rounding is amplified: to go on below it would only wander
-        let redundant = work.softening.is_some();
-        let tolerance = if redundant { self.tolerance.max(FLOOR * rounding) } else { self.tolerance };
+        let deep = self.deep && work.softening.is_none();
+        let tolerance = if deep { self.tolerance } else { self.tolerance.max(FLOOR * rounding) };
         let mut it = Iteration {
             convergence: Convergence::new(tolerance, rounding, TRUST, eta, 0.0),
             factors: Factors::new(self.policy),
