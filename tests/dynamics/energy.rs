@@ -166,3 +166,31 @@ fn a_balance_that_only_its_own_integration_may_explain_is_said_to_be_blind() {
     audit.add(1.0, energy(3.0), power(0.0), power(0.0));
     assert!(!audit.is_blind(0.0), "{audit:?}");
 }
+
+/// Between long steps a falling weight has the energy of the moment, not that of the last step.
+#[test]
+fn energy_is_told_of_the_instant_of_a_sample() {
+    let text = r#"
+        gravity = [0, 0, -10]
+        [run]
+        duration = 1
+        output = 0.01
+        [[elements]]
+        type = "point_mass"
+        name = "weight"
+        marker = [0, 0, 0]
+        mass = 2
+        [[forces]]
+        type = "gravity"
+        [[records]]
+        type = "energy"
+        "#;
+    let file = SceneFile::parse(text, "falls", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let run = ropewalk::simulate(file.scene()).unwrap_or_else(|e| panic!("{e}"));
+    assert!(run.counts.steps < 50, "the steps are to be longer than samples: {:?}", run.counts);
+    let kinetic = run.column("energy.kinetic").expect("recorded");
+    for (t, kinetic) in run.times().iter().zip(kinetic) {
+        let exact = 0.5 * 2.0 * (10.0 * t).powi(2);
+        assert!((kinetic - exact).abs() < 1e-6 * 100.0, "{t} s: {kinetic} J instead of {exact}");
+    }
+}
