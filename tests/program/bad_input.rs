@@ -569,3 +569,67 @@ fn run_folders_that_cannot_be_written_are_refused() {
         }
     }
 }
+
+/// The multipliers of a wheel are no force on it.
+#[test]
+fn the_reaction_of_a_sheave_is_refused_with_what_tells_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = r#"
+        [run]
+        duration = 0.1
+        [[elements]]
+        type = "point_mass"
+        name = "a"
+        marker = [-0.2, 0, -2]
+        mass = 5
+        [[elements]]
+        type = "point_mass"
+        name = "b"
+        marker = [0.2, 0, -2]
+        mass = 5
+        [[elements]]
+        type = "cable"
+        name = "r"
+        section = { mass = 0.1, ea = 1e6 }
+        elements = 4
+        tension = 49.05
+        route = [{ end = "a" }, { over = "wheel" }, { end = "b" }]
+        [[constraints]]
+        type = "sheave"
+        name = "wheel"
+        marker = [0, 0, 0]
+        axis = [0, 1, 0]
+        radius = 0.2
+        [[records]]
+        type = "reaction"
+        of = "wheel"
+        "#;
+    let said = refuse_scene(folder.path(), scene);
+    assert!(said.stderr.contains("`axle_force` of a record of type `sheave`"), "{}", said.stderr);
+}
+
+/// A column that is misspelt would be as if it weren't there.
+#[test]
+fn a_column_of_a_vessels_motion_that_is_misspelt_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("motion.csv"), "t,surge,heeve\n0,0,0\n1,0.1,0.2\n2,0,0\n").unwrap();
+    let scene = r#"
+        [run]
+        duration = 1
+        [[elements]]
+        type = "rigid_body"
+        name = "ship"
+        position = [0, 0, 0]
+        mass = 1e3
+        inertia = [1e3, 1e3, 1e3]
+        [[constraints]]
+        type = "vessel"
+        name = "moves"
+        marker = "ship"
+        file = "motion.csv"
+        "#;
+    let said = refuse_scene(folder.path(), scene);
+    for part in ["motion.csv, line 1", "`heeve`", "did you mean `heave`?"] {
+        assert!(said.stderr.contains(part), "no {part}: {}", said.stderr);
+    }
+}
