@@ -21,4 +21,10 @@ impl SplitMix64 {
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 * 2.0_f64.powi(-53)
     }
+    /// Puts things into random order (Fisher and Yates).
+    pub fn shuffle<T>(&mut self, things: &mut [T]) {
+        for k in (1..things.len()).rev() {
+            things.swap(k, (self.unit() * (k + 1) as f64) as usize);
+        }
+    }
 }

@@ -71,9 +71,12 @@ pub fn sample(
             medians.into_iter().map(wave).collect()
         }
     };
-    // neighbouring frequencies go to different directions, each of which has the whole band
-    for (k, wave) in waves.iter_mut().enumerate() {
-        wave.direction = directions[k % directions.len()];
+    // neighbouring frequencies go to different directions, each of which has the whole band; in random order, as else the
+    // highest ones, which make most of the accelerations, always go to the same side
+    let mut order = directions;
+    for neighbours in waves.rchunks_mut(order.len()) {
+        random.shuffle(&mut order);
+        neighbours.iter_mut().zip(&order).for_each(|(wave, direction)| wave.direction = *direction);
     }
     let hs = spectrum.significant_height();
     let energy: f64 = waves.iter().map(|w| 0.5 * w.amplitude * w.amplitude).sum();

@@ -1,6 +1,7 @@
 //! What a scene says about a rigid body.
 
 use super::part::BodyPart;
+use super::stations::PARTS;
 use super::{Hull, Inertia, Shape, inertia};
 use crate::point_mass::Ball;
 use ropewalk_core::error::{finite, not_negative, positive};
@@ -93,7 +94,8 @@ fn place<'de, D: serde::Deserializer<'de>>(d: D) -> Result<Option<V3<f64>>, D::E
     quantity::vec3::length(d).map(Some)
 }
 
-/// A straight cylinder on a body, for drag and added mass.
+/// A straight cylinder on a body, for drag and added mass. Water acts at four places along it, in waves at 128 or more, four
+/// along each half of the shortest wave.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HullSpec {
@@ -271,8 +273,10 @@ impl ElementSpec for RigidBodySpec {
                 diameter: hull.diameter,
                 area,
             };
-            let fits = stations.push(b.nodes(), hull, &[node]);
-            debug_assert!(fits, "a hull sits on one frame");
+            for part in hull.parts(b.water().ok(), PARTS) {
+                let fits = stations.push(b.nodes(), part, &[node]);
+                debug_assert!(fits, "a hull sits on one frame");
+            }
         }
         let mut points: BTreeMap<String, V3<f64>> = BTreeMap::new();
         for (name, point) in &self.points {

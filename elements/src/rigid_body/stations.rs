@@ -4,6 +4,8 @@ use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
 use ropewalk_core::{
     Batch, Gives, Load, Local, Real, Share, Station, StationElement, V3, Weights, dot, scaled,
 };
+use ropewalk_scene::Water;
+use std::f64::consts::PI;
 
 /// Places and weights of four Gauss points on `[0, 1]`, exact up to degree seven.
 const GAUSS: [(f64, f64); 4] = [
@@ -28,6 +30,34 @@ pub struct Hull<R = f64> {
     pub diameter: R,
     /// Area of the displaced volume per length [m²].
     pub area: R,
+}
+
+/// Least and most parts of a body's hull in waves.
+pub(crate) const PARTS: [usize; 2] = [32, 64];
+
+impl Hull {
+    /// Its equal parts, with stations each: in still water one, in waves as many as are shorter than half of the shortest wave
+    /// within these bounds. On half of a wave four Gauss points are right to 1e-5; where a surface that moves cuts a pile, more
+    /// are needed for the same.
+    pub(crate) fn parts(
+        self,
+        water: Option<&Water>,
+        bounds: [usize; 2],
+    ) -> impl Iterator<Item = Hull> + use<> {
+        let parts = water.and_then(|water| water.sea.as_ref()).map_or(1, |sea| {
+            let waves = self.length * sea.waves().shortest() / PI;
+            (waves.ceil() as usize).clamp(bounds[0], bounds[1])
+        });
+        let share = 1.0 / parts as f64;
+        let (axis, length) = (self.axis.map(|x| share * x), share * self.length);
+        (0..parts).map(move |k| Hull {
+            from: std::array::from_fn(|i| self.from[i] + k as f64 * axis[i]),
+            s0: self.s0 + k as f64 * length,
+            axis,
+            length,
+            ..self
+        })
+    }
 }
 
 impl<R: Real> Hull<R> {

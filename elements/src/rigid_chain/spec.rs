@@ -282,8 +282,10 @@ impl ElementSpec for RigidChainSpec {
             let v = [self.velocity[0], self.velocity[1], self.velocity[2], 0.0, 0.0, 0.0];
             let node = b.node(NodeKind::Frame, &q, &v)?;
             b.element(inertia, &[node])?;
-            let fits = stations.push(b.nodes(), Hull { s0: k as f64 * link, ..hull }, &[node]);
-            debug_assert!(fits, "a hull sits on one frame");
+            for part in (Hull { s0: k as f64 * link, ..hull }).parts(b.water().ok(), [1, 8]) {
+                let fits = stations.push(b.nodes(), part, &[node]);
+                debug_assert!(fits, "a hull sits on one frame");
+            }
             let seat = b.nodes()[node.0 as usize];
             nodes.push(node);
             seats.push((seat.q, seat.v));

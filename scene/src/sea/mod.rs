@@ -48,11 +48,14 @@ impl Sea {
                 [omega.min(slow), omega.max(fast)]
             });
         let about = format!(
-            "waves: {} of {:.3} to {:.3} s, significant height {:.4} m, in water {}; {how}",
+            "waves: {} of {:.3} to {:.3} s, {}, in water {}; {how}",
             waves.len(),
             TAU / fastest,
             TAU / slowest,
-            4.0 * waves.deviation(),
+            match waves.len() {
+                0..=FEW => format!("up to {:.4} m high", waves.height()),
+                _ => format!("significant height {:.4} m", waves.height()),
+            },
             spec.depth.map_or_else(|| "that is deep".into(), |h| format!("{h} m deep")),
         );
         Ok(Sea { waves, level, about, lattice, alive: Arc::new(()) })

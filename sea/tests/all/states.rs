@@ -121,6 +121,26 @@ fn directions_spread_about_the_mean() {
     }
 }
 
+/// The highest waves, which make most of the accelerations, come from all sides.
+#[test]
+fn accelerations_have_the_mean_direction_too() {
+    let spectrum = Spectrum::Jonswap { hs: 3.0, tp: 9.0, gamma: 3.3 };
+    let spreading = Spreading { s: 4.0, directions: 20 };
+    let mean: f64 = (0..40)
+        .map(|seed| {
+            let waves =
+                sample(&spectrum, 400, seed, Sampling::EqualEnergy, 0.3, Some(spreading)).expect("sea");
+            let sums = waves.iter().fold([0.0; 2], |[c, s], w| {
+                let e = w.amplitude.powi(2) * w.omega.powi(4);
+                [c + e * w.direction.cos(), s + e * w.direction.sin()]
+            });
+            sums[1].atan2(sums[0]) - 0.3
+        })
+        .sum::<f64>()
+        / 40.0;
+    assert!(mean.abs() < 0.08, "{mean}");
+}
+
 #[test]
 fn what_makes_no_sea_is_refused_with_its_field() {
     let fine = Spectrum::Jonswap { hs: 2.0, tp: 8.0, gamma: 3.3 };

@@ -25,47 +25,36 @@ fn rows<'a>(v: &'a Value, name: &str) -> &'a [Value] {
     v[name].as_array().expect("a list")
 }
 
-/// A cylinder of many pieces, each held by itself.
-fn pieces(from: [f64; 3], to: [f64; 3], count: usize, diameter: f64) -> String {
-    let mut text = String::new();
-    let at = |x: f64| -> [f64; 3] { std::array::from_fn(|i| from[i] + x * (to[i] - from[i])) };
-    for k in 0..count {
-        let [a, b] = [k, k + 1].map(|k| at(k as f64 / count as f64));
-        let _ = write!(
-            text,
-            r#"
-            [[elements]]
-            type = "rigid_body"
-            name = "p{k}"
-            position = [0, 0, 0]
-            mass = 100
-            inertia = [10, 10, 10]
-            hull = {{ from = {a:?}, to = {b:?}, diameter = {diameter} }}
-            [[constraints]]
-            type = "weld"
-            name = "w{k}"
-            marker = "p{k}"
-            to = [0, 0, 0]
-            [[records]]
-            type = "reaction"
-            of = "w{k}"
-            "#
-        );
-    }
-    text
+/// A cylinder that is held.
+fn held(from: [f64; 3], to: [f64; 3], diameter: f64) -> String {
+    format!(
+        r#"
+        [[elements]]
+        type = "rigid_body"
+        name = "pile"
+        position = [0, 0, 0]
+        mass = 100
+        inertia = [10, 10, 10]
+        hull = {{ from = {from:?}, to = {to:?}, diameter = {diameter} }}
+        [[constraints]]
+        type = "weld"
+        name = "hold"
+        marker = "pile"
+        [[records]]
+        type = "reaction"
+        of = "hold"
+        "#
+    )
 }
 
-/// What the water does to all pieces, at every row: force and moment about the origin.
-fn total(h: &History, count: usize, column: &str) -> Vec<f64> {
-    let all: Vec<&[f64]> =
-        (0..count).map(|k| h.column(&format!("w{k}.{column}")).expect("a column")).collect();
-    (0..all[0].len()).map(|row| -all.iter().map(|c| c[row]).sum::<f64>()).collect()
+/// What the water does to it, at every row: force and moment about the origin.
+fn load(h: &History, column: &str) -> Vec<f64> {
+    h.column(&format!("hold.{column}")).expect("a column").iter().map(|x| -x).collect()
 }
 
 /// A pile in regular waves, up to the surface, with the default stretching: force and overturning moment.
 #[test]
 fn a_pile_in_waves_has_the_force_of_morison() {
-    const COUNT: usize = 40;
     for case in rows(&read("morison_pile"), "cases") {
         let [h, height, period, d, cm, cd] =
             ["h", "H", "T", "D", "CM", "CD"].map(|k| number(&case["case"][k]));
@@ -94,10 +83,10 @@ fn a_pile_in_waves_has_the_force_of_morison() {
             theory = "morison"
             "#,
             step * (history.len() - 1) as f64,
-            pieces([0.0, 0.0, -h], [0.0, 0.0, height], COUNT, d),
+            held([0.0, 0.0, -h], [0.0, 0.0, height], d),
             cm - 1.0,
         ));
-        let (force, moment) = (total(&h_run, COUNT, "fx"), total(&h_run, COUNT, "my"));
+        let (force, moment) = (load(&h_run, "fx"), load(&h_run, "my"));
         let most = |name: &str| history.iter().map(|r| number(&r[name]).abs()).fold(0.0, f64::max);
         let (mut worst, mut worst_moment) = (0.0_f64, 0.0_f64);
         for (k, row) in history.iter().enumerate() {
@@ -115,7 +104,6 @@ fn a_pile_in_waves_has_the_force_of_morison() {
 /// A cylinder at an angle in waves and a current, deep enough to be wet.
 #[test]
 fn an_inclined_cylinder_in_waves_and_current_has_the_force_of_morison() {
-    const COUNT: usize = 16;
     for case in rows(&read("morison_inclined"), "cases") {
         let c = &case["case"];
         let [h, height, period, beta, d, ca, cn, ct] =
@@ -150,9 +138,9 @@ fn an_inclined_cylinder_in_waves_and_current_has_the_force_of_morison() {
             "#,
             step * (history.len() - 1) as f64,
             list(&c["current"]),
-            pieces(ends[0], ends[1], COUNT, d),
+            held(ends[0], ends[1], d),
         ));
-        let force = ["fx", "fy", "fz"].map(|column| total(&h_run, COUNT, column));
+        let force = ["fx", "fy", "fz"].map(|column| load(&h_run, column));
         let most = history.iter().flat_map(|r| list(&r["F"])).fold(0.0, |m: f64, f| m.max(f.abs()));
         let worst = history.iter().enumerate().fold(0.0_f64, |worst, (k, row)| {
             (0..3).fold(worst, |worst, i| worst.max((force[i][k] - list(&row["F"])[i]).abs() / most))
