@@ -245,6 +245,9 @@ impl ConstraintSpec for VesselSpec {
     fn markers(&self) -> Vec<&MarkerRef> {
         vec![&self.marker]
     }
+    fn responses(&self) -> Option<&RaoSpec> {
+        self.rao.as_ref()
+    }
     fn notes(&self, _: &Model) -> Vec<String> {
         let long = self.rao.as_ref().and_then(RaoSpec::long_motions);
         long.into_iter().map(|text| format!("`{}` {text}", self.name)).collect()

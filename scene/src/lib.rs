@@ -8,6 +8,7 @@ mod builder;
 pub mod controllers;
 mod current;
 pub mod document;
+mod doubts;
 pub mod file;
 pub mod functions;
 mod inputs;

@@ -9,6 +9,7 @@ use crate::controllers::Channels;
 use crate::inputs::{InputSpec, Inputs};
 use crate::marker::MarkerRef;
 use crate::reeving::Guide;
+use crate::responses::RaoSpec;
 use crate::run::Run;
 use crate::water::{Air, Water};
 use ropewalk_core::integrator::Options;
@@ -50,6 +51,10 @@ pub trait ConstraintSpec: Debug + Send + Sync {
     fn guides(&self) -> Vec<Guide> {
         Vec::new()
     }
+    /// How it answers to waves.
+    fn responses(&self) -> Option<&RaoSpec> {
+        None
+    }
     /// What one should know about it, one sentence each, in the model that was built.
     fn notes(&self, _: &ropewalk_core::Model) -> Vec<String> {
         Vec::new()
@@ -67,6 +72,10 @@ pub trait ForceSpec: Debug + Send + Sync {
     }
     /// The parts that it gives the scene's weight; an empty list means all of them.
     fn weighs(&self) -> Option<&[String]> {
+        None
+    }
+    /// How it answers to waves, with its name.
+    fn responses(&self) -> Option<(&str, &RaoSpec)> {
         None
     }
     /// What one should know about it, one sentence each.

@@ -7,6 +7,7 @@ use crate::waves::WavesSpec;
 use ropewalk_core::error::{finite, not_negative, positive};
 use ropewalk_core::{BuildError, Hold, Real, Signal, V3};
 use ropewalk_quantity::{Kind, Setting, kind};
+use ropewalk_sea::Waves;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -127,10 +128,14 @@ impl Water {
         let (drift, _) = self.current()?.at(level);
         Sea::new(waves, level, -g, drift).map(|sea| Some(Arc::new(sea)))
     }
-    /// What one should know of its waves under the gravity of a scene [m/s²]: that they are higher than waves can be.
-    pub fn steep(&self, [.., g]: V3<f64>) -> Option<String> {
+    /// Its waves under the gravity of a scene [m/s²], without a table for them.
+    pub fn swell(&self, [.., g]: V3<f64>) -> Option<Waves> {
         let (drift, _) = self.current().ok()?.at(self.level?);
-        let waves = self.waves.as_ref()?.waves(-g, drift).ok()?;
+        self.waves.as_ref()?.waves(-g, drift).ok()
+    }
+    /// What one should know of its waves under the gravity of a scene [m/s²]: that they are higher than waves can be.
+    pub fn steep(&self, gravity: V3<f64>) -> Option<String> {
+        let waves = self.swell(gravity)?;
         let (height, most) = (waves.height(), waves.breaking_height());
         (height > most).then(|| {
             format!(

@@ -326,3 +326,73 @@ fn reactions_of_driven_chains_are_as_exact_as_asked() {
     // what the manual promises of tolerances
     assert!(off < 3.0 * 1e-4, "{off:.1e} of the largest force at worst, 1e-4 asked for");
 }
+
+/// A body that is shaken is where its motion has it, between steps as at their ends, and as fast; so is its energy.
+#[test]
+fn what_a_motion_leads_is_where_and_as_fast_as_it_says() {
+    use std::f64::consts::TAU;
+    for solver in ["", "solver = { scheme = \"radau-iia-5\" }"] {
+        let text = format!(
+            r#"
+            run = {{ duration = "4 s", output = "7 ms" }}
+            {solver}
+            elements = [{{ type = "rigid_body", name = "b", position = [0, 0, 0], mass = 3, inertia = [1, 1, 1] }}]
+            constraints = [{{ type = "driving", name = "d", marker = "b", motion = "m" }}]
+            motions = [{{ type = "harmonic", name = "m", amplitude = [10, 0, 0], frequency = 2, ramp = 0.5 }}]
+            records = [{{ type = "position", of = "b" }}, {{ type = "velocity", of = "b" }}, {{ type = "energy" }}]
+            "#
+        );
+        let file = SceneFile::parse(&text, "shaken", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let h = simulate(file.scene()).unwrap_or_else(|e| panic!("{e}"));
+        let mut worst = [0.0_f64; 3];
+        for (k, t) in h.times().iter().enumerate().filter(|(_, t)| **t > 0.5) {
+            let (sin, cos) = (2.0 * TAU * t).sin_cos();
+            let (x, v) = (10.0 * sin, 20.0 * TAU * cos);
+            for (worst, (column, right)) in
+                worst.iter_mut().zip([("b.x", x), ("b.vx", v), ("energy.kinetic", 1.5 * v * v)])
+            {
+                let off = (at(&h, column, k) - right).abs();
+                *worst = if off <= *worst { *worst } else { off };
+            }
+        }
+        assert!(worst[0] < 1e-9 && worst[1] < 1e-8 && worst[2] < 1e-5, "{solver}: {worst:?}");
+    }
+}
+
+/// A slider that a crank drives has the kinetic energy of its geometry, and the motor's work is what has become of it.
+#[test]
+fn a_driven_slider_crank_has_the_energy_of_its_geometry() {
+    const SCENE: &str = r#"
+        run = { duration = "2 s", output = "2 ms" }
+        gravity = [0, 0, 0]
+        motions = [{ type = "spin", name = "w", rate = 15, ramp = 0 }]
+        elements = [
+            { type = "rigid_body", name = "c", position = [0, 0, 0], mass = 1, inertia = [0.1, 0.1, 0.1],
+              angular_velocity = [0, 0, 15], points = { e = [0.2, 0, 0] } },
+            { type = "rigid_body", name = "k", position = [0.5, 0, 0], mass = 1, inertia = [0.006, 0.03, 0.03],
+              velocity = [0, 1.5, 0], angular_velocity = [0, 0, -5], points = { a = [-0.3, 0, 0], b = [0.3, 0, 0] } },
+            { type = "rigid_body", name = "s", position = [0.8, 0, 0], mass = 3, inertia = [0.1, 0.1, 0.1] },
+        ]
+        constraints = [
+            { type = "revolute", name = "h", marker = "c", axis = [0, 0, 1] },
+            { type = "rotation", name = "m", marker = "c", axis = [0, 0, 1], motion = "w" },
+            { type = "revolute", name = "h1", marker = "k.a", to = "c.e", axis = [0, 0, 1] },
+            { type = "spherical", name = "h2", marker = "k.b", to = "s" },
+            { type = "prismatic", name = "p", marker = "s", axis = [1, 0, 0] },
+        ]
+        records = [{ type = "energy" }]
+    "#;
+    let file = SceneFile::parse(SCENE, "crank", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let h = simulate(file.scene()).unwrap_or_else(|e| panic!("{e}"));
+    for (k, t) in h.times().iter().enumerate() {
+        let (sin, cos) = (15.0 * t).sin_cos();
+        let lean = -(sin / 3.0).asin();
+        let (turns, (s, c)) = (-5.0 * cos / lean.cos(), lean.sin_cos());
+        let (x, y, slide) =
+            (-3.0 * sin - 0.3 * s * turns, 3.0 * cos + 0.3 * c * turns, -3.0 * sin - 0.6 * s * turns);
+        let right = 0.5 * (0.1 * 225.0 + x * x + y * y + 0.03 * turns * turns + 3.0 * slide * slide);
+        let found = at(&h, "energy.kinetic", k);
+        // what steps do wrong of positions is 1e-6 of them
+        assert!((found - right).abs() < 1e-4 * right, "{t}: {found} J, {right} J by geometry");
+    }
+}

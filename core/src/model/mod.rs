@@ -104,6 +104,8 @@ pub struct Model {
     timed: Vec<usize>,
     /// The constraints that change with time.
     moving: Vec<usize>,
+    /// Whether some of them lead more than a coordinate that they prescribe.
+    led: bool,
     /// The constraints that prescribe a coordinate, and its places.
     driven: Vec<(usize, usize, usize)>,
     /// Whether a term has a kink in velocities.
@@ -193,6 +195,7 @@ impl Model {
         let coupling = (0..terms.len()).filter(|&k| terms[k].couples().is_some()).collect();
         let kinked = terms.iter().any(|t| t.kinked());
         let structure = Structure::new(&nodes, &touched, &pattern, symmetric);
+        let led = constraints.iter().any(|c| c.moves() && c.prescribes().is_none());
         let driven = constraints.iter().enumerate();
         let driven = driven.filter_map(|(c, own)| own.prescribes().map(|(q, v)| (c, q, v))).collect();
         let mechanism = constraints.iter().any(|c| !c.linear());
@@ -227,6 +230,7 @@ impl Model {
             watchful,
             timed,
             moving,
+            led,
             driven,
             kinked,
             remembering,
@@ -524,6 +528,11 @@ impl Model {
     /// Whether something changes with time of its own accord.
     pub(crate) fn is_timed(&self) -> bool {
         !(self.timed.is_empty() && self.moving.is_empty())
+    }
+
+    /// Whether motions lead something without prescribing its coordinates.
+    pub(crate) fn is_led(&self) -> bool {
+        self.led
     }
 
     fn watchful(&self) -> impl Iterator<Item = &dyn Foresees> {

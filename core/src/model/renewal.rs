@@ -98,6 +98,7 @@ impl Model {
             watchful: self.watchful.clone(),
             timed: self.timed.clone(),
             moving: self.moving.clone(),
+            led: self.led,
             driven: self.driven.clone(),
             kinked: self.kinked,
             remembering: self.remembering.clone(),

@@ -54,7 +54,7 @@ impl Simulation {
     }
 
     /// What the factors of the last step were made with, if they can be used without a trace.
-    fn weights(&self) -> Option<Weights> {
+    pub(super) fn weights(&self) -> Option<Weights> {
         self.work.factored.filter(|weights| weights.q > 0.0 && self.work.solver.is_settled())
     }
 
@@ -162,7 +162,7 @@ impl Simulation {
         accelerate(model, s, aside)
     }
 
-    fn take_aside(&mut self) -> Result<Box<Workspace>, SolveError> {
+    pub(super) fn take_aside(&mut self) -> Result<Box<Workspace>, SolveError> {
         let mut aside = match self.aside.take() {
             Some(aside) => aside,
             None => Box::new(Workspace::new(&self.model)?),

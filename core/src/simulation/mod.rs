@@ -8,6 +8,7 @@ mod events;
 mod forces;
 mod inputs;
 pub mod layers;
+mod led;
 mod look;
 mod memory;
 pub mod record;
@@ -272,6 +273,10 @@ impl Simulation {
         self.check_times(end, interval)?;
         let start = self.sampled.0;
         self.depart(end);
+        // motions may set out with another acceleration than they came with
+        if self.keep_audit && !self.model.inputs().is_empty() && self.led_to_end() {
+            self.power = self.model.power(&self.scratch.at(), &self.scratch.lambda);
+        }
         // times that differ by less than this are the same: no step of the size of rounding. To call them so mustn't move
         // what is driven
         let short = match self.integrator.options().stepping {
@@ -375,7 +380,10 @@ impl Simulation {
     fn account(&mut self) {
         if self.keep_audit {
             let begin = self.work.clocks.start();
-            let (energy, power) = self.model.balance(&self.state.at(), &self.state.lambda);
+            let (energy, power) = match self.led_to_end() {
+                true => self.model.balance(&self.scratch.at(), &self.scratch.lambda),
+                false => self.model.balance(&self.state.at(), &self.state.lambda),
+            };
             let h = self.state.t - self.previous.t;
             self.accounted = (self.audit, self.power);
             self.audit.add(h, energy, self.power, power);
@@ -442,11 +450,11 @@ impl Simulation {
             }
         }
         let (t, forces, strains) = (self.scratch.t, observer.needs_forces(), observer.needs_strains());
-        let found = match forces {
+        let found = self.lead().and_then(|()| match forces {
             true => self.find_forces(),
             false if strains => self.find_strains(),
             false => Ok(()),
-        };
+        });
         let failed = |source| StepError::Linear { t, source, unknown: "the accelerations for output".into() };
         found.map_err(failed)?;
         self.show_balance(observer.needs_energy());

@@ -6,7 +6,7 @@
 
 use super::{Observer, Simulation};
 use crate::model::node::NodeId;
-use crate::solve::integrator::{Speeds, Stepping};
+use crate::solve::integrator::{Group, Speeds, Stepping};
 
 /// Times the speed of its part from which on the speed of a point is worth a word: the end of a rod that swings has 1.7.
 const FAST: f64 = 3.0;
@@ -39,9 +39,7 @@ impl Simulation {
     /// Warns at the end of a run in which a point got much faster than its part, where errors may add up.
     pub(super) fn watch_ends(&mut self, end: f64, observer: &mut dyn Observer) {
         let (t, steps) = (self.state.t, self.work.counts.steps);
-        if !matches!(self.integrator.options().stepping, Stepping::Controlled { .. }) {
-            return;
-        }
+        let Stepping::Controlled { tolerance, .. } = self.integrator.options().stepping else { return };
         let Uneven { parts, told, now } = &mut self.uneven;
         self.work.norms.speeds(self.model.nodes(), &self.state.v, now);
         parts.resize(now.len(), Fastest::default());
@@ -55,8 +53,10 @@ impl Simulation {
         if t < end || *told || steps < BEGUN || self.memory.forgets() {
             return;
         }
-        // what has no mass has no mean
-        for part in parts.iter().filter(|part| part.mean > 0.0 && part.most > FAST * part.mean) {
+        // what has no mass has no mean; who doesn't get further than the tolerance can't be off by more
+        let far = |(part, group): &(&Fastest, &Group)| part.most * t > tolerance * group.length;
+        let uneven = |(part, _): &(&Fastest, &Group)| part.mean > 0.0 && part.most > FAST * part.mean;
+        for (part, _) in parts.iter().zip(&self.work.norms.groups).filter(far).filter(uneven) {
             let Fastest { mean, most, node, t } = part;
             *told = true;
             observer.warn(&format!(

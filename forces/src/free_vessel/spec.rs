@@ -173,6 +173,9 @@ impl ForceSpec for FreeVesselSpec {
     fn markers(&self) -> Vec<&MarkerRef> {
         vec![&self.marker]
     }
+    fn responses(&self) -> Option<(&str, &RaoSpec)> {
+        Some((&self.name, self.loads.as_ref()?))
+    }
     fn notes(&self) -> Vec<String> {
         let k = self.stiffness.rows();
         let long = self.loads.as_ref().and_then(|loads| loads.long_loads([k[2][2], k[3][3], k[4][4]]));

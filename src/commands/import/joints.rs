@@ -2,17 +2,29 @@
 
 use super::deck::Deck;
 use super::parts::{Held, Line, Point};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+/// The constraints that hold ends of lines: by the name of the line, and 0 for its start or 1 for its end.
+pub(super) type Joints = BTreeMap<(String, usize), String>;
+
 /// Joins the ends of lines at a point.
-pub(super) fn fasten(point: &Point<'_>, lines: &[Line<'_>], density: f64, out: &mut String) {
+pub(super) fn fasten(
+    point: &Point<'_>,
+    lines: &[Line<'_>],
+    density: f64,
+    joints: &mut Joints,
+    out: &mut String,
+) {
     let at = |l: &Line<'_>, k: usize| format!("{}.{}", l.name, ["start", "end"][k]);
     let mut ends = lines.iter().flat_map(|l| [(l, 0), (l, 1)]).filter(|(l, k)| l.ends[*k] == point.id);
-    let spherical = |name: &str, marker: &str, to: &str, out: &mut String| {
+    let mut spherical = |name: &str, l: &Line<'_>, end: usize, to: &str, out: &mut String| {
         let _ = write!(
             out,
-            "\n[[constraints]]\ntype = \"spherical\"\nname = \"{name}\"\nmarker = \"{marker}\"\n{to}"
+            "\n[[constraints]]\ntype = \"spherical\"\nname = \"{name}\"\nmarker = \"{}\"\n{to}",
+            at(l, end)
         );
+        joints.insert((l.name.clone(), end), name.to_string());
     };
     let id = &point.id;
     match point.held {
@@ -25,13 +37,13 @@ pub(super) fn fasten(point: &Point<'_>, lines: &[Line<'_>], density: f64, out: &
             }
             for (k, (l, end)) in ends.enumerate() {
                 let name = if k == 0 { format!("point{id}") } else { format!("point{id}-{}", l.name) };
-                spherical(&name, &at(l, end), "", out);
+                spherical(&name, l, end, "", out);
             }
         }
         Held::Body => {
             for (l, end) in ends {
                 let to = format!("to = \"{}.point{id}\"\n", point.body);
-                spherical(&format!("point{id}-{}", l.name), &at(l, end), &to, out);
+                spherical(&format!("point{id}-{}", l.name), l, end, &to, out);
             }
         }
         Held::Free => {
@@ -50,28 +62,32 @@ pub(super) fn fasten(point: &Point<'_>, lines: &[Line<'_>], density: f64, out: &
             }
             for (l, end) in ends {
                 let to = format!("to = \"{}\"\n", marker.as_deref().unwrap_or(""));
-                spherical(&format!("point{id}-{}", l.name), &at(l, end), &to, out);
+                spherical(&format!("point{id}-{}", l.name), l, end, &to, out);
             }
         }
     }
 }
 
-/// Tensions at both ends of each line, and what the deck asks for besides.
+/// Forces on both ends of each line, and what the deck asks for besides.
 pub(super) fn records(
     deck: &Deck<'_>,
     lines: &[Line<'_>],
     points: &[Point<'_>],
+    joints: &Joints,
     notes: &mut Vec<String>,
     out: &mut String,
 ) {
     for line in lines {
         let number = line.name.trim_start_matches("line");
-        for (name, at) in [("FairTen", "end"), ("AnchTen", "start")] {
-            let _ = write!(
-                out,
-                "\n[[records]]\ntype = \"along\"\nof = \"{}\"\nwhat = \"tension\"\nat = \"{at}\"\nname = \"{name}{number}\"\n",
-                line.name
-            );
+        for (name, at, end) in [("FairTen", "end", 1), ("AnchTen", "start", 0)] {
+            // the force on the end, where something holds it
+            let what = match joints.get(&(line.name.clone(), end)) {
+                Some(joint) => format!("type = \"reaction\"\nof = \"{joint}\"\nwhat = \"magnitude\""),
+                None => {
+                    format!("type = \"along\"\nof = \"{}\"\nwhat = \"tension\"\nat = \"{at}\"", line.name)
+                }
+            };
+            let _ = write!(out, "\n[[records]]\n{what}\nname = \"{name}{number}\"\n");
         }
     }
     let mut left = Vec::new();

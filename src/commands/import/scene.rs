@@ -2,7 +2,7 @@
 
 use super::body::body;
 use super::deck::Deck;
-use super::joints::{fasten, records};
+use super::joints::{Joints, fasten, records};
 use super::parts::{LineType, line, line_type, place, point};
 use super::rod::{hold, meet, rod};
 use super::water::{forces, head};
@@ -143,8 +143,9 @@ pub(super) fn scene(deck: &Deck<'_>, name: &str, folder: &Path) -> Result<Import
             line.section
         );
     }
+    let mut joints = Joints::new();
     for point in &points {
-        fasten(point, &lines, density, &mut out);
+        fasten(point, &lines, density, &mut joints, &mut out);
     }
     for row in &deck.rods {
         hold(deck, row, &lines, &mut out)?;
@@ -153,6 +154,6 @@ pub(super) fn scene(deck: &Deck<'_>, name: &str, folder: &Path) -> Result<Import
     for row in &deck.rods {
         meet(deck, row, &mut out)?;
     }
-    records(deck, &lines, &points, &mut notes, &mut out);
+    records(deck, &lines, &points, &joints, &mut notes, &mut out);
     Ok(Imported { text: out, notes })
 }

@@ -113,7 +113,10 @@ impl Started {
                 ));
             }
         }
-        all.extend(scene.water.as_ref().and_then(|water| water.steep(scene.gravity)));
+        all.extend(match self {
+            Started::Dynamics(s, ..) => scene.doubts(&s.model, &s.state.at()),
+            Started::Statics(done) | Started::Process(_, done) => scene.doubts(&done.model, &done.state.at()),
+        });
         if !scene.run.audit && scene.records.iter().any(|r| r.typetag_name() == "energy") {
             all.push("energy is recorded but not followed: set `audit = true` in [run]".into());
         }

@@ -236,3 +236,40 @@ fn a_table_moves_a_vessel() {
         assert!(error.contains(said), "{said}: {error}");
     }
 }
+
+/// What a table of responses doesn't reach, and what lies below the water, is told.
+#[test]
+fn seas_beyond_a_table_and_parts_below_the_bed_are_told() {
+    let text = |omegas: &str, depth: f64| {
+        format!(
+            r#"
+            run = {{ duration = 2, output = 1 }}
+            [water]
+            level = 0
+            waves = {{ jonswap = {{ hs = 3, tp = 6 }}, depth = {depth}, ramp = 2 }}
+            {BODY}
+            position = [0, 0, 0]
+            hull = {{ from = [-20, 0, -12], to = [20, 0, -12], diameter = 6 }}
+            [[constraints]]
+            type = "vessel"
+            name = "course"
+            marker = "ship"
+            [constraints.rao]
+            headings = [0]
+            omegas = {omegas}
+            amplitude = [[[0, 0, 1, 0, 0, 0], [0, 0, 1, 0, 0, 0]]]
+            lag = [[[0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0]]]
+            [[forces]]
+            type = "drag"
+            "#
+        )
+    };
+    let told = |omegas: &str, depth: f64, what: &str| {
+        let warnings = run(&text(omegas, depth)).warnings;
+        warnings.iter().any(|w| w.contains(what))
+    };
+    let beyond = "`course` has responses to waves of 13.96 to 15.71 s, and 100 % of the energy";
+    assert!(told("[0.4, 0.45]", 40.0, beyond) && !told("[0.3, 4.5]", 40.0, "has responses to waves"));
+    let below = "`ship` reaches down to 12.000 m under the surface, and the water is 10 m deep";
+    assert!(told("[0.3, 4.5]", 10.0, below) && !told("[0.3, 4.5]", 40.0, "reaches down"));
+}

@@ -87,7 +87,7 @@ pub(crate) fn agree_in_velocity(
 }
 
 /// Right-hand side that removes what the constraints are violated by, if that is more than rounding.
-pub(super) fn way_back(model: &Model, at: &At<'_>, work: &mut Workspace) -> Option<Vec<f64>> {
+pub(crate) fn way_back(model: &Model, at: &At<'_>, work: &mut Workspace) -> Option<Vec<f64>> {
     let nv = model.velocities();
     let mut rhs = vec![0.0; model.structure().n];
     model.violations(at, &mut work.system, &mut rhs[nv..]);

@@ -24,8 +24,9 @@ pub use alpha::Alpha;
 pub use consistent::consistent;
 pub(crate) use consistent::{
     accelerate, agree, agree_in_velocity, consistent_by_iteration, consistent_by_mass, move_velocities,
+    way_back,
 };
-pub(crate) use norm::Speeds;
+pub(crate) use norm::{Group, Speeds};
 pub use options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping};
 pub use radau::Radau;
 pub use scales::{Scales, Stopping, Units};
@@ -33,6 +34,7 @@ pub use scheme::{Coefficients, Scheme};
 pub(crate) use start::restart;
 pub use start::{Correction, prepare};
 pub use step::{Integrator, StepError, StepReport};
+pub(crate) use workspace::Which;
 pub use workspace::{Counts, Workspace};
 
 use crate::model::Model;
