@@ -191,9 +191,8 @@ impl Waves {
         let sum: f64 = self.all.iter().map(|c| 2.0 * c.a.abs()).sum();
         if self.all.len() <= FEW { sum } else { sum.min(4.0 * self.deviation()) }
     }
-    /// The height at which waves of their length break, by Miche (1944): `0.142 λ tanh kh`, with the wavenumber that halves their
-    /// energy [m].
-    pub fn breaking_height(&self) -> f64 {
+    /// The wavenumber that halves their energy [1/m]; 0 of no waves.
+    pub fn median(&self) -> f64 {
         let mut all: Vec<(f64, f64)> = self.all.iter().map(|c| (c.k, c.a * c.a)).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         let half = 0.5 * all.iter().map(|(_, energy)| energy).sum::<f64>();
@@ -202,7 +201,12 @@ impl Waves {
             sum += energy;
             sum >= half
         });
-        median.map_or(f64::INFINITY, |(k, _)| 0.142 * 2.0 * PI / k * (k * self.depth).tanh())
+        median.map_or(0.0, |(k, _)| *k)
+    }
+    /// The height at which waves of their length break, by Miche (1944): `0.142 λ tanh kh` [m].
+    pub fn breaking_height(&self) -> f64 {
+        let k = self.median();
+        if k > 0.0 { 0.142 * 2.0 * PI / k * (k * self.depth).tanh() } else { f64::INFINITY }
     }
     /// The direction of all of them, if they have one.
     pub(crate) fn way(&self) -> Option<[f64; 2]> {

@@ -1,7 +1,6 @@
 //! What a scene says about a rigid body.
 
 use super::part::BodyPart;
-use super::stations::PARTS;
 use super::{Hull, Inertia, Shape, inertia};
 use crate::point_mass::Ball;
 use ropewalk_core::error::{finite, not_negative, positive};
@@ -94,8 +93,8 @@ fn place<'de, D: serde::Deserializer<'de>>(d: D) -> Result<Option<V3<f64>>, D::E
     quantity::vec3::length(d).map(Some)
 }
 
-/// A straight cylinder on a body, for drag and added mass. Water acts at four places along it, in waves at 128 or more, four
-/// along each half of the shortest wave.
+/// A straight cylinder on a body, for drag and added mass. Water acts at four places along it, in waves at as many more as they
+/// and the surface ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HullSpec {
@@ -273,7 +272,7 @@ impl ElementSpec for RigidBodySpec {
                 diameter: hull.diameter,
                 area,
             };
-            for part in hull.parts(b.water().ok(), PARTS) {
+            for part in hull.parts(length, b.water().ok()) {
                 let fits = stations.push(b.nodes(), part, &[node]);
                 debug_assert!(fits, "a hull sits on one frame");
             }

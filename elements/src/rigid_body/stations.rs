@@ -32,21 +32,22 @@ pub struct Hull<R = f64> {
     pub area: R,
 }
 
-/// Least and most parts of a body's hull in waves.
-pub(crate) const PARTS: [usize; 2] = [32, 64];
+/// Most parts of a hull.
+const PARTS: usize = 64;
+/// Where the surface cuts a part, it takes loads of a whole station: the error goes with the square of the part's length, and is a
+/// thousandth of the load of the hull where this is the length over `√(l / k)`, with the reach `l` of waves along the hull.
+const CUT: f64 = 0.15;
 
 impl Hull {
-    /// Its equal parts, with stations each: in still water one, in waves as many as are shorter than half of the shortest wave
-    /// within these bounds. On half of a wave four Gauss points are right to 1e-5; where a surface that moves cuts a pile, more
-    /// are needed for the same.
-    pub(crate) fn parts(
-        self,
-        water: Option<&Water>,
-        bounds: [usize; 2],
-    ) -> impl Iterator<Item = Hull> + use<> {
+    /// Its equal parts, with stations each: in still water one, in waves as many as are shorter than half of the shortest wave (there
+    /// four Gauss points are right to 1e-5), and so short that a surface that moves may cut them. `whole` is
+    /// the length of what it is a link of [m].
+    pub(crate) fn parts(self, whole: f64, water: Option<&Water>) -> impl Iterator<Item = Hull> + use<> {
         let parts = water.and_then(|water| water.sea.as_ref()).map_or(1, |sea| {
-            let waves = self.length * sea.waves().shortest() / PI;
-            (waves.ceil() as usize).clamp(bounds[0], bounds[1])
+            let (waves, l) = (sea.waves(), self.length);
+            let [k, shortest] = [waves.median(), waves.shortest()];
+            let cut = CUT * (whole.min(1.0 / k) / k).sqrt();
+            ((l * shortest / PI).max(l / cut).ceil() as usize).clamp(1, PARTS)
         });
         let share = 1.0 / parts as f64;
         let (axis, length) = (self.axis.map(|x| share * x), share * self.length);

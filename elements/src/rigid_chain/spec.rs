@@ -282,7 +282,8 @@ impl ElementSpec for RigidChainSpec {
             let v = [self.velocity[0], self.velocity[1], self.velocity[2], 0.0, 0.0, 0.0];
             let node = b.node(NodeKind::Frame, &q, &v)?;
             b.element(inertia, &[node])?;
-            for part in (Hull { s0: k as f64 * link, ..hull }).parts(b.water().ok(), [1, 8]) {
+            for part in (Hull { s0: k as f64 * link, ..hull }).parts(self.links as f64 * link, b.water().ok())
+            {
                 let fits = stations.push(b.nodes(), part, &[node]);
                 debug_assert!(fits, "a hull sits on one frame");
             }
