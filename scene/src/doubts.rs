@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 /// What counts as being in the bed, as a share of the depth: lines are laid on it.
 const IN_THE_BED: f64 = 0.01;
 /// A share of the waves' energy that responses may leave out.
-const LEFT_OUT: f64 = 0.01;
+const LEFT_OUT: f64 = 0.1;
 
 impl Scene {
     /// What one should know of waves, vessels and the depth of the water before trusting what the scene gives in this state.

@@ -60,6 +60,8 @@ const STARTS: usize = 2;
 /// What is left of an approximation, in parts of it, that is no eigenvalue to be: where eigenvectors aren't orthogonal,
 /// the first few products of a start vector have values of their own.
 const ROUGH: f64 = 1e-3;
+/// The frequency that rounding gives a double real eigenvalue, in parts of it.
+const SPLIT: f64 = 1e-6;
 
 /// The `count` modes with the smallest `|λ|`, or all if there are fewer. `kinds` says of each unknown along which
 /// direction it moves.
@@ -154,7 +156,7 @@ fn collect(
             continue;
         }
         if !mode.rigid {
-            modes.push(mode);
+            apart(p, mode, &mut modes);
             continue;
         }
         // rest and steady motion of a rigid mode are two eigenvalues with one shape; a pair may hold two shapes
@@ -167,7 +169,19 @@ fn collect(
             }
         }
     }
+    modes.truncate(count);
     Ok(modes)
+}
+
+/// Adds a mode: two that go one way only, where rounding made a pair of what are two real eigenvalues of one value.
+fn apart(p: &Pencil, mode: Raw, modes: &mut Vec<Raw>) {
+    let [growth, omega] = mode.rate;
+    if omega == 0.0 || omega > SPLIT * growth.abs() {
+        modes.push(mode);
+        return;
+    }
+    let shapes = mode.shape.iter().filter_map(|part| unit(p, part)).collect::<Vec<_>>();
+    modes.extend(shapes.into_iter().map(|x| Raw { rate: [growth, 0.0], shape: [x, Vec::new()], ..mode }));
 }
 
 /// `λ = σ + 1/θ`.

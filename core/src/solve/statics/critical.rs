@@ -4,11 +4,15 @@ use super::naming::describe;
 use super::outcome::{Critical, CriticalKind, Found, Point, StaticsError};
 use super::path::Way;
 use super::problem::Statics;
-use crate::model::node::retract;
+use crate::model::node::{difference, retract};
 use crate::model::state::State;
 
 /// How often an interval of the load is halved to locate where eigenvalues cross.
 const HALVINGS: u32 = 20;
+/// How many of these leave what crosses clear of rounding.
+const CLEAR: u32 = 10;
+/// What is left of the way between two equilibria once their loads are the same to rounding, if they are of different paths.
+const LEAP: f64 = 0.1;
 /// How far behind a critical load the stable path is taken up, in parts of what is left of the way.
 const BEHIND: f64 = 0.02;
 
@@ -59,21 +63,30 @@ impl Statics<'_> {
         })
     }
 
-    /// Locates where eigenvalues cross between two equilibria under loads without potential, by bisection of the load.
-    pub(super) fn locate_by_load(&mut self, from: &State, to: &State, found: &mut Found) {
+    /// Locates where eigenvalues cross between two equilibria under loads without potential, by bisection of the load; whether
+    /// they do: the two may be of different paths, between which the iteration has leapt.
+    pub(super) fn locate_by_load(&mut self, from: &State, to: &State, found: &mut Found) -> bool {
         let kept = (self.unstable, self.neutral.clone(), self.doubt.clone(), self.judged.clone());
-        let (mut low, mut high, mut judged) = (from.clone(), to.t, self.judged.clone());
-        for _ in 0..HALVINGS {
+        let (mut low, mut high, mut judged) = (from.clone(), to.clone(), self.judged.clone());
+        for k in 0..HALVINGS {
             let mut middle = low.clone();
-            middle.t = 0.5 * (low.t + high);
-            let t = middle.t;
+            middle.t = 0.5 * (low.t + high.t);
             let Ok(more) = self.search(&mut middle, false, false, false) else { break };
             found.add(&more);
             if self.unstable > 0 || self.judged.flutter > 0.0 {
-                (high, judged) = (t, self.judged.clone());
+                high = middle;
+                // right beside the crossing rounding chooses what the eigenvalues look like
+                if k < CLEAR {
+                    judged = self.judged.clone();
+                }
             } else {
                 low = middle;
             }
+        }
+        let (whole, left) = (self.distance(&from.q, &to.q), self.distance(&low.q, &high.q));
+        if left > LEAP * whole && left > self.options.tolerance {
+            (self.unstable, self.neutral, self.doubt, self.judged) = kept;
+            return false;
         }
         let (kind, shape) = match judged.way_out {
             Some(shape) => (CriticalKind::Bifurcation, shape),
@@ -82,7 +95,7 @@ impl Statics<'_> {
         let shape = self.small(shape);
         let state = self.riding(&low);
         self.critical.push(Critical {
-            t: 0.5 * (low.t + high),
+            t: 0.5 * (low.t + high.t),
             kind,
             directions: judged.unstable.max(1),
             what: describe(self.model, &low.q, &shape),
@@ -90,6 +103,7 @@ impl Statics<'_> {
             state,
         });
         (self.unstable, self.neutral, self.doubt, self.judged) = kept;
+        true
     }
 
     /// Leaves a critical point for the stable path behind it.
@@ -124,6 +138,20 @@ impl Statics<'_> {
         let t = critical.t;
         let e = error.unwrap_or_else(|| self.fail(state, "", found.iterations));
         Err(StaticsError { why: format!("behind {} at load factor {t}, {}", critical.kind, e.why), ..e })
+    }
+
+    /// The stable equilibrium at the load of an unstable one that the iteration leapt to from a stable path, on the same side.
+    pub(super) fn leave_leapt(&mut self, from: &State, to: &State, found: &mut Found) -> Option<State> {
+        let (nv, nodes) = (self.model.velocities(), self.model.nodes());
+        let shape = self.judged.way_out.clone()?;
+        let mut back = vec![0.0; nv];
+        difference(nodes, &to.q, &from.q, &mut back);
+        let sign = if self.inner(&back, &shape) < 0.0 { -1.0 } else { 1.0 };
+        let push: Vec<f64> = self.small(shape).iter().map(|x| sign * x).collect();
+        let mut there = to.clone();
+        retract(nodes, &to.q, &push, &mut there.q);
+        self.creep(&mut there, found, false).ok()?;
+        Some(there)
     }
 
     /// Leaves the last critical point for the stable path behind it.

@@ -205,7 +205,7 @@ impl Statics<'_> {
                 Ok(found) => {
                     sum.add(&found);
                     if self.judged.flutter > 0.0 && !swings {
-                        self.locate_by_load(&before, state, &mut sum);
+                        let _ = self.locate_by_load(&before, state, &mut sum);
                     } else if self.leapt(&before, state) {
                         self.go_round(&before, state, &mut sum)?;
                     }
@@ -224,11 +224,15 @@ impl Statics<'_> {
             let beyond = state.clone();
             state.clone_from(&before);
             if self.options.stable && unstable && !self.judged.potential {
-                self.locate_by_load(&before, &beyond, &mut sum);
-                self.leave_last(state, to, &mut sum)?;
-                continue;
-            }
-            if self.options.stable && (h.abs() <= short || unstable) && arcs < ARCS {
+                if self.locate_by_load(&before, &beyond, &mut sum) {
+                    self.leave_last(state, to, &mut sum)?;
+                    continue;
+                }
+                if let Some(back) = self.leave_leapt(&before, &beyond, &mut sum) {
+                    *state = back;
+                    continue;
+                }
+            } else if self.options.stable && (h.abs() <= short || unstable) && arcs < ARCS {
                 arcs += 1;
                 let known = self.critical.len();
                 match self.trace(state, to, &mut sum) {

@@ -360,7 +360,7 @@ impl Statics<'_> {
     }
 
     /// Inner product of increments: mean over the nodes, in parts of the reference length; multipliers don't count.
-    fn inner(&self, a: &[f64], b: &[f64]) -> f64 {
+    pub(super) fn inner(&self, a: &[f64], b: &[f64]) -> f64 {
         let (mut sum, mut count) = (0.0, 0);
         let square = self.model.length().powi(2);
         for n in self.places() {

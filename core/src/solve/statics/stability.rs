@@ -20,6 +20,8 @@ use crate::solve::modes::slowest;
 
 /// Part of the diagonal of the tangent that is taken for rounding of it, and stands in for stiffness that is missing.
 pub(super) const MARGIN: f64 = 1e-12;
+/// A motion that swings less often than this in the time in which it grows e-fold goes one way [rad].
+const ONE_WAY: f64 = 0.05;
 /// How many eigenvalues are asked for where loads have no potential.
 const SLOWEST: usize = 8;
 
@@ -164,8 +166,11 @@ impl Statics<'_> {
                 // rounding leaves motions among them that the constraints forbid
                 rates.retain(|m| self.is_allowed(&m.shape) && self.is_allowed(&m.quadrature));
                 for mode in rates.iter().filter(|m| m.is_unstable()) {
-                    if mode.omega == 0.0 {
-                        out.unstable += 1;
+                    if mode.omega <= ONE_WAY * mode.growth {
+                        // near a critical load rounding makes a pair of two directions that are left alike
+                        let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
+                        let pair = square(&mode.quadrature) > 1e-6 * square(&mode.shape);
+                        out.unstable += 1 + usize::from(pair);
                         out.way_out.get_or_insert_with(|| mode.shape.clone());
                     } else if mode.growth > out.flutter {
                         out.flutter = mode.growth;
