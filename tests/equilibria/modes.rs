@@ -510,6 +510,17 @@ fn columns_buckle_at_the_critical_factor_of_their_loads() {
     assert!(modal(&column(0.0, true, [false, false]), 4).critical.is_none(), "no load, no factor");
 }
 
+/// A beam that a force bends has no critical load: its stiffness along the cable turns with it, which linear buckling took for one.
+#[test]
+fn what_is_bent_has_no_critical_factor_for_that() {
+    for load in [0.2, 1.0, 3.0] {
+        let mut scene = column(0.0, true, [false, false]);
+        scene.force(PointForceSpec::new("column.end", [load, 0.0, 0.0], TimeFunction::default()));
+        let found = modal(&scene, 4);
+        assert_eq!(found.critical.expect("a load").factor, None, "{load}");
+    }
+}
+
 #[test]
 fn follower_forces_flutter_and_never_buckle() {
     // Beck's column flutters at 20.051 without damping

@@ -328,22 +328,27 @@ impl Model {
 
     /// Rates of the constraints, `G v + ∂g/∂t`.
     pub fn constraint_rates(&self, at: &At<'_>, sys: &mut System, rate: &mut [f64]) {
+        for c in 0..self.constraints.len() {
+            self.constraint_rate(c, at, sys, &mut rate[self.rows_of(c)]);
+        }
+    }
+
+    /// The same of one constraint.
+    pub(crate) fn constraint_rate(&self, c: usize, at: &At<'_>, sys: &mut System, rate: &mut [f64]) {
+        if !self.holds(c, at.internal) {
+            rate.fill(0.0);
+            return;
+        }
+        let (constraint, m) = (&self.constraints[c], rate.len());
         let (mut g, mut bias) = ([0.0; MOST_ROWS], [0.0; MOST_ROWS]);
-        for (c, constraint) in self.constraints.iter().enumerate() {
-            let rows = self.rows_of(c);
-            if !self.holds(c, at.internal) {
-                rate[rows].fill(0.0);
-                continue;
-            }
-            let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
-            sys.jacobian.resize(n * rows.len(), 0.0);
-            constraint.jacobian(&self.nodes, at, &mut g[..rows.len()], &mut sys.jacobian);
-            constraint.rates(&self.nodes, at, &mut rate[rows.clone()], &mut bias[..rows.len()]);
-            let dofs = constraint.nodes().iter().flat_map(|&k| self.node(k).dofs());
-            for (j, dof) in dofs.enumerate() {
-                for (r, rate) in rate[rows.clone()].iter_mut().enumerate() {
-                    *rate += sys.jacobian[r * n + j] * at.v[dof];
-                }
+        let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
+        sys.jacobian.resize(n * m, 0.0);
+        constraint.jacobian(&self.nodes, at, &mut g[..m], &mut sys.jacobian);
+        constraint.rates(&self.nodes, at, rate, &mut bias[..m]);
+        let dofs = constraint.nodes().iter().flat_map(|&k| self.node(k).dofs());
+        for (j, dof) in dofs.enumerate() {
+            for (r, rate) in rate.iter_mut().enumerate() {
+                *rate += sys.jacobian[r * n + j] * at.v[dof];
             }
         }
     }

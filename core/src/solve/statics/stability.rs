@@ -16,7 +16,7 @@ use super::outcome::{Judgement, Neutral};
 use super::problem::Statics;
 use crate::model::state::{Relaxation, Relaxed, State};
 use crate::solve::linear::SolveError;
-use crate::solve::modes::slowest;
+use crate::solve::modes::{Mode, slowest};
 
 /// Part of the diagonal of the tangent that is taken for rounding of it, and stands in for stiffness that is missing.
 pub(super) const MARGIN: f64 = 1e-12;
@@ -24,6 +24,8 @@ pub(super) const MARGIN: f64 = 1e-12;
 const ONE_WAY: f64 = 0.05;
 /// How many eigenvalues are asked for where loads have no potential.
 const SLOWEST: usize = 8;
+/// What is so much slower than the fastest of these moves freely: what is left of an equilibrium and rounding make such rates.
+const NEUTRAL: f64 = 1e-5;
 
 impl Statics<'_> {
     /// Judges the equilibrium in `there`, which Newton's method came to by the increment `last`; `seed` varies the way out.
@@ -165,7 +167,10 @@ impl Statics<'_> {
             Ok(mut rates) => {
                 // rounding leaves motions among them that the constraints forbid
                 rates.retain(|m| self.is_allowed(&m.shape) && self.is_allowed(&m.quadrature));
-                for mode in rates.iter().filter(|m| m.is_unstable()) {
+                let rate = |m: &Mode| m.growth.hypot(m.omega);
+                let least = NEUTRAL * rates.iter().map(rate).fold(0.0, f64::max);
+                let neutral = |m: &&Mode| m.rigid || rate(m) <= least;
+                for mode in rates.iter().filter(|m| m.is_unstable() && !neutral(m)) {
                     if mode.omega <= ONE_WAY * mode.growth {
                         // near a critical load rounding makes a pair of two directions that are left alike
                         let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
@@ -177,7 +182,7 @@ impl Statics<'_> {
                         out.swing.clone_from(&mode.shape);
                     }
                 }
-                for mode in rates.iter().filter(|m| m.rigid) {
+                for mode in rates.iter().filter(neutral) {
                     out.neutral.push(Neutral::new(self.model, there, mode.shape.clone()));
                 }
             }
