@@ -598,3 +598,37 @@ fn a_running_string_has_its_frequencies() {
     let refused = modes(&growing, &ModesOptions::default()).err().expect("it grows").to_string();
     assert!(refused.contains("feeds at one end only, at 30 m/s"), "{refused}");
 }
+
+/// What is unstable and has no other motion, and what may spin besides: `λ² = g/l` of a bob on a rod that stands upright.
+#[test]
+fn an_inverted_pendulum_falls_at_its_rate() {
+    for hoop in [
+        "",
+        "[[constraints]]\ntype = \"coordinate\"\nname = \"hoop\"\nmarker = \"bob\"\ndirection = [0, 1, 0]",
+    ] {
+        let text = format!(
+            r#"
+            run = {{ analysis = "statics" }}
+            [[elements]]
+            type = "point_mass"
+            name = "bob"
+            marker = [0, 0, 2]
+            mass = 3
+            [[constraints]]
+            type = "distance"
+            name = "rod"
+            marker = "bob"
+            to = [0, 0, 0]
+            [[forces]]
+            type = "gravity"
+            {hoop}
+            "#
+        );
+        let file = SceneFile::parse(&text, "bob", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let found = modal(file.scene(), 4);
+        let rates: Vec<f64> = found.modes.iter().filter(|m| m.is_unstable()).map(|m| m.growth).collect();
+        let right = (ropewalk_scene::GRAVITY[2].abs() / 2.0).sqrt();
+        assert_eq!(rates.len(), if hoop.is_empty() { 2 } else { 1 });
+        assert!(rates.iter().all(|r| (r / right - 1.0).abs() < 1e-9), "{rates:?} {right}");
+    }
+}

@@ -223,3 +223,66 @@ fn a_ball_floats_and_heaves_by_its_waterplane() {
         assert!((period / of("heave_period_no_added_mass") - 1.0).abs() < 1e-5);
     }
 }
+
+/// A cylinder whose centre of mass is above its metacentre heels until `GM + BM tan²φ/2 = 0`, by the formula of wall-sided ships: from
+/// upright, where it lies in balance, and from a little beside.
+#[test]
+fn a_float_without_upright_stability_heels() {
+    let (diameter, draught): (f64, f64) = (1.3, 0.5);
+    let bm = diameter * diameter / (16.0 * draught);
+    let gm = 0.5 * draught + bm - 0.5;
+    let heel = (-2.0 * gm / bm).sqrt().atan();
+    for start in [0.0, 0.05] {
+        let h = run(&format!(
+            r#"
+            [run]
+            analysis = "statics"
+            [water]
+            density = 1000
+            level = 0
+            [[elements]]
+            type = "rigid_body"
+            name = "it"
+            position = [0, 0, 0]
+            angles = [0, {start}, 0]
+            mass = {mass}
+            volume = {volume}
+            inertia = [125.4, 125.4, 140.2]
+            hull = {{ from = [0, 0, -0.5], to = [0, 0, 0.5], diameter = {diameter} }}
+            [[constraints]]
+            type = "coordinate"
+            name = "x"
+            marker = "it"
+            direction = [1, 0, 0]
+            [[constraints]]
+            type = "coordinate"
+            name = "y"
+            marker = "it"
+            direction = [0, 1, 0]
+            [[constraints]]
+            type = "perpendicular"
+            name = "yaw"
+            marker = "it"
+            axis = [0, 1, 0]
+            axis_to = [1, 0, 0]
+            [[constraints]]
+            type = "perpendicular"
+            name = "roll"
+            marker = "it"
+            axis = [0, 1, 0]
+            axis_to = [0, 0, 1]
+            [[forces]]
+            type = "gravity"
+            [[forces]]
+            type = "buoyancy"
+            [[records]]
+            type = "orientation"
+            of = "it"
+            "#,
+            mass = 1000.0 * PI / 4.0 * diameter * diameter * draught,
+            volume = PI / 4.0 * diameter * diameter,
+        ));
+        let found = h.last("it.phi2").expect("a row");
+        assert!((found.abs() - heel).abs() < 1e-4, "from {start}: {found} instead of {heel}");
+    }
+}

@@ -202,7 +202,14 @@ fn fastest(l: &Linear) -> f64 {
             }
         }
     }
-    if most > 0.0 { most } else { 1.0 }
+    // the very rate of what falls over and does nothing else would as a shift make the matrix singular
+    let diagonal = s.diagonal_at.iter().map(|&p| (l.stiffness[p as usize], l.mass[p as usize]));
+    let falls = diagonal.filter(|(_, m)| *m > 0.0).any(|(k, m)| -k / m > 0.9 * most);
+    match most > 0.0 {
+        true if falls => 2.0 * most,
+        true => most,
+        false => 1.0,
+    }
 }
 
 fn zero_multipliers(s: &Structure, x: &mut [f64]) {

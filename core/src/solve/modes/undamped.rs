@@ -29,14 +29,25 @@ impl Operator for Inverse<'_> {
 
 /// How many start vectors: bending of a straight cable in space has all its frequencies twice.
 const STARTS: usize = 4;
+/// How far a shift goes aside from where the matrix is singular, and how often.
+const ASIDE: f64 = 1.37;
+const MOST_ASIDE: usize = 4;
 
 /// A shift `m` [1/s²] near the lowest eigenvalue that isn't zero: above zero, so that free parts don't make the matrix
 /// singular, and not far above the eigenvalues that are asked for. Leaves `K + m M` factored.
 pub(super) fn shift(p: &mut Pencil) -> Result<f64, ModesError> {
-    let (mut m, mut lowered) = (guess(p).ok().flatten().unwrap_or(1e-6 * p.fastest), 0);
+    let (mut m, mut lowered, mut aside) = (guess(p).ok().flatten().unwrap_or(1e-6 * p.fastest), 0, 0);
     for _ in 0..12 {
-        p.factor(0.0, m).map_err(ModesError::Solver)?;
-        let lowest = lowest(p, m)?;
+        let seen = p.factor(0.0, m).map_err(ModesError::Solver).and_then(|()| lowest(p, m));
+        let lowest = match seen {
+            Ok(lowest) => lowest,
+            // an unstable mode grows at just this rate
+            Err(ModesError::Solver(_)) if aside < MOST_ASIDE => {
+                (m, aside) = (ASIDE * m, aside + 1);
+                continue;
+            }
+            Err(e) => return Err(e),
+        };
         if lowest.is_finite() {
             if (0.1 * m..=10.0 * m).contains(&lowest) {
                 break;

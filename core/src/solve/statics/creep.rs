@@ -21,6 +21,8 @@ const STAGES: [f64; 5] = [1e-3, 1e-2, 1e-1, 1.0, f64::INFINITY];
 /// pushed off it.
 const STILL: f64 = 1e-3;
 const PUSHES: u32 = 5;
+/// The least drag to begin with, in parts of the largest stiffness.
+const BALANCED: f64 = 1e-9;
 /// Largest move in one step, relative to the reference length.
 const FARTHEST: f64 = 0.3;
 
@@ -39,7 +41,8 @@ impl Statics<'_> {
         let load = self.load(state).max(f64::MIN_POSITIVE);
         let masses = self.masses(state);
         let (length, nv) = (self.model.length(), self.model.velocities());
-        let first = 10.0 * load / length;
+        // a float that lies in balance has no load, and falls over all the same
+        let first = (10.0 * load / length).max(BALANCED * self.brace_scale());
         let (mut drag, mut near) = (first, 0_u32);
         let mut stages = STAGES[if far { 0 } else { STAGES.len() - 1 }..].iter();
         let mut stage = *stages.next().unwrap_or(&f64::INFINITY);

@@ -68,12 +68,14 @@ impl Statics<'_> {
     pub(super) fn locate_by_load(&mut self, from: &State, to: &State, found: &mut Found) -> bool {
         let kept = (self.unstable, self.neutral.clone(), self.doubt.clone(), self.judged.clone());
         let (mut low, mut high, mut judged) = (from.clone(), to.clone(), self.judged.clone());
+        let diverges = self.unstable > 0;
         for k in 0..HALVINGS {
             let mut middle = low.clone();
             middle.t = 0.5 * (low.t + high.t);
             let Ok(more) = self.search(&mut middle, false, false, false) else { break };
             found.add(&more);
-            if self.unstable > 0 || self.judged.flutter > 0.0 {
+            // what goes one way is looked for apart from what swings
+            if self.unstable > 0 || !diverges && self.judged.flutter > 0.0 {
                 high = middle;
                 // right beside the crossing rounding chooses what the eigenvalues look like
                 if k < CLEAR {
@@ -173,7 +175,7 @@ impl Statics<'_> {
         let load = self.load(state);
         self.count(state, None, load)?;
         let w = self.weights();
-        let lowest = self.lowest(&w, count).ok()?;
+        let lowest = self.unstable_first(&w, count).ok()?;
         Some(lowest.iter().map(|x| self.increment(x)).collect())
     }
 

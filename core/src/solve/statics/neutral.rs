@@ -34,10 +34,27 @@ impl Neutral {
     }
 }
 
+/// An eigenvalue `(K, W)` below this with the other sign belongs to an unstable direction.
+const UNSTABLE: f64 = 1e-9;
+
 impl Statics<'_> {
     /// The `k` vectors of smallest eigenvalues `(K, W)` with the factored tangent `K + m W`, by subspace iteration; in
     /// elimination order.
     pub(super) fn lowest(&mut self, w: &[f64], k: usize) -> Result<Vec<Vec<f64>>, SolveError> {
+        self.lowest_by(w, k, |x| x.abs())
+    }
+
+    /// The same, those with unstable directions first.
+    pub(super) fn unstable_first(&mut self, w: &[f64], k: usize) -> Result<Vec<Vec<f64>>, SolveError> {
+        self.lowest_by(w, k, |x| if x < -UNSTABLE { -1.0 / x.abs() } else { x.abs() })
+    }
+
+    fn lowest_by(
+        &mut self,
+        w: &[f64],
+        k: usize,
+        rank: impl Fn(f64) -> f64,
+    ) -> Result<Vec<Vec<f64>>, SolveError> {
         let (s, mut noise) = (&self.structure, Noise::default());
         let zeroed = |x: &mut Vec<f64>| {
             x.iter_mut().zip(&s.is_multiplier).filter(|(_, m)| **m).for_each(|(x, _)| *x = 0.0);
@@ -83,7 +100,7 @@ impl Statics<'_> {
         });
         let eigen = h.symmetric_eigen();
         let mut order: Vec<usize> = (0..n).collect();
-        order.sort_by(|&a, &b| eigen.eigenvalues[a].abs().total_cmp(&eigen.eigenvalues[b].abs()));
+        order.sort_by(|&a, &b| rank(eigen.eigenvalues[a]).total_cmp(&rank(eigen.eigenvalues[b])));
         let vector = |&c: &usize| -> Vec<f64> {
             let mut x = vec![0.0; s.n];
             for (i, v) in space.iter().enumerate() {
