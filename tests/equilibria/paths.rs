@@ -618,3 +618,75 @@ fn a_pipe_with_faster_and_faster_flow_buckles_once() {
     // which way it bends nothing tells
     assert!(h.warnings.iter().all(|w| w.contains("turns about the axis (1, 0, 0)")), "{:?}", h.warnings);
 }
+
+/// Lee's frame, two beams of length L at a right angle with a load at a fifth of the upper one, leads past the same limit point
+/// whatever its size: 120 km, 1.2 m, 1.2 mm.
+#[test]
+fn a_frame_of_any_size_follows_the_same_path() {
+    let found = [1.2e5, 1.2, 1.2e-3].map(|l| {
+        // what bends is as 1/1200 of the length to what stretches, the load in EI/L²
+        let (ea, ei) = (4.32e9, 4.32e9 * l * l / 4.32e4);
+        let load = 1e6 * 120.0 * 120.0 / (l * l) * ei / 1.44e9;
+        let beam = |name: &str, from: [f64; 3], to: [f64; 3]| {
+            format!(
+                r#"
+                [[elements]]
+                type = "cable"
+                name = "{name}"
+                points = [{from:?}, {to:?}]
+                elements = 10
+                section = {{ mass = 1e-6, ea = {ea:e}, ei = [{ei:e}, {:e}], gj = {:e} }}
+                normal = [0, 1, 0]
+                "#,
+                100.0 * ei,
+                100.0 * ei
+            )
+        };
+        let text = format!(
+            r#"
+            gravity = [0, 0, 0]
+            run = {{ analysis = "statics", duration = 4 }}
+            statics = {{ steps = 40 }}
+            {}
+            {}
+            [[constraints]]
+            type = "weld"
+            name = "w"
+            marker = "b.start"
+            to = "c.end"
+            [[constraints]]
+            type = "revolute"
+            name = "l"
+            marker = "c.start"
+            axis = [0, 1, 0]
+            [[constraints]]
+            type = "revolute"
+            name = "r"
+            marker = "b.end"
+            axis = [0, 1, 0]
+            [[forces]]
+            type = "point_force"
+            marker = "b@20%"
+            force = [0, 0, {}]
+            time = {{ table = {{ t = [0, 100], value = [0, 100] }} }}
+            [[records]]
+            type = "position"
+            of = "b@20%"
+            "#,
+            beam("c", [0.0; 3], [0.0, 0.0, l]),
+            beam("b", [0.0, 0.0, l], [l, 0.0, l]),
+            -load
+        );
+        let h = run(&text, &[]).unwrap_or_else(|e| panic!("{l} m: {e}"));
+        assert_eq!(h.critical.len(), 1, "{l} m: {:?}", h.critical);
+        assert_eq!(h.critical[0].kind, CriticalKind::Limit);
+        let [x, z] = ["b@20%.x", "b@20%.z"].map(|name| h.last(name).expect("recorded") / l);
+        [h.critical[0].load_factor, x, z]
+    });
+    println!("{found:?}");
+    for other in &found[1..] {
+        for (a, b) in found[0].iter().zip(other) {
+            assert!((a - b).abs() < 1e-6, "{found:?}");
+        }
+    }
+}

@@ -283,8 +283,13 @@ impl Model {
         structure.add_constraint(clique, [n, m], hessian, &sys.jacobian, &mut sys.values);
     }
 
-    /// Adds `ρ GᵀG` to an assembled matrix and `ρ Gᵀg` to its residual. For each row `ρ = scale / |G row|²`.
-    pub(crate) fn add_brace(&self, structure: &Structure, scale: f64, sys: &mut System) {
+    /// Adds `ρ GᵀG` to an assembled matrix and `ρ Gᵀg` to its residual. For each row `1/ρ = Σ G²/k`, with this stiffness `k` of positions
+    /// and of what has no length: so `ρ` has the unit that its row asks for.
+    pub(crate) fn add_brace(&self, structure: &Structure, stiffness: [f64; 2], sys: &mut System) {
+        let mut soft = vec![1.0 / stiffness[1]; self.velocities];
+        for n in self.nodes.iter().filter(|n| n.kind.has_position()) {
+            soft[n.v..n.v + 3].fill(1.0 / stiffness[0]);
+        }
         for (c, constraint) in self.constraints.iter().enumerate() {
             let rows = self.rows_of(c);
             let (m, dofs): (usize, Vec<usize>) =
@@ -297,11 +302,11 @@ impl Model {
                 (0..m * n).map(|k| sys.values[structure.slot(row_of(k), place(dofs[k % n]))]).collect();
             for (r, row) in rows.clone().enumerate() {
                 let g = &jac[r * n..(r + 1) * n];
-                let square: f64 = g.iter().map(|x| x * x).sum();
-                if square == 0.0 {
+                let compliance: f64 = g.iter().zip(&dofs).map(|(x, &dof)| x * x * soft[dof]).sum();
+                if compliance == 0.0 {
                     continue;
                 }
-                let rho = scale / square;
+                let rho = 1.0 / compliance;
                 let value = sys.residual[self.velocities + row];
                 for i in 0..n {
                     sys.residual[dofs[i]] += rho * g[i] * value;

@@ -376,7 +376,9 @@ impl Done {
             self.critical = search.critical().to_vec();
             let found = found?;
             for remark in remarks_on(search) {
-                if !self.remarks.contains(&remark) {
+                // of several free directions any mixture may be named
+                let head = |text: &str| text.split(" through ").next().unwrap_or_default().to_string();
+                if !self.remarks.iter().any(|old| head(old) == head(&remark)) {
                     self.remarks.push(remark);
                 }
             }

@@ -42,7 +42,7 @@ impl Statics<'_> {
         let masses = self.masses(state);
         let (length, nv) = (self.model.length(), self.model.velocities());
         // a float that lies in balance has no load, and falls over all the same
-        let first = (10.0 * load / length).max(BALANCED * self.brace_scale());
+        let first = (10.0 * load / length).max(BALANCED * self.stiffest()[0]);
         let (mut drag, mut near) = (first, 0_u32);
         let mut stages = STAGES[if far { 0 } else { STAGES.len() - 1 }..].iter();
         let mut stage = *stages.next().unwrap_or(&f64::INFINITY);

@@ -346,8 +346,7 @@ impl Statics<'_> {
         self.model.assemble_in(&self.structure, &at, &state.lambda, None, &mut ahead);
         // braced alike: the same Jacobian with the same weight
         ahead.values.clone_from(&self.system.values);
-        let scale = self.brace_scale();
-        self.model.add_brace(&self.structure, scale, &mut ahead);
+        self.model.add_brace(&self.structure, self.stiffest(), &mut ahead);
         self.prepare();
         let rate = ahead.residual.iter().zip(&self.system.residual).map(|(b, a)| (b - a) / dt).collect();
         self.ahead = ahead;

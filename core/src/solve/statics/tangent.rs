@@ -131,16 +131,30 @@ impl Statics<'_> {
     /// without stiffness before its constraint is reached in the elimination.
     pub(super) fn brace(&mut self) {
         if self.model.multipliers() > 0 {
-            self.model.add_brace(&self.structure, self.brace_scale(), &mut self.system);
+            self.model.add_brace(&self.structure, self.stiffest(), &mut self.system);
         }
     }
 
-    /// Largest diagonal entry of the assembled stiffness; where there is none before constraints have their forces, that of
-    /// the load over its reference length.
-    pub(super) fn brace_scale(&self) -> f64 {
-        let diagonal = self.structure.diagonal[..self.model.velocities()].iter();
-        let largest = diagonal.map(|&p| self.system.values[p as usize].abs()).fold(0.0, f64::max);
-        if largest > 0.0 { largest } else { (self.worst().1 / self.model.length()).max(f64::MIN_POSITIVE) }
+    /// Largest diagonal entries of the assembled stiffness, of positions and of what has no length; where there are none before
+    /// constraints have their forces, that of the load over its reference length.
+    pub(super) fn stiffest(&self) -> [f64; 2] {
+        let s = &self.structure;
+        let mut largest = [0.0_f64; 2];
+        for n in self.model.nodes() {
+            for i in n.dofs() {
+                let kind = usize::from(i - n.v >= 3 || !n.kind.has_position());
+                largest[kind] = largest[kind].max(self.system.values[s.diagonal[i] as usize].abs());
+            }
+        }
+        let length = self.model.length();
+        if !(largest[0] > 0.0) {
+            let turns = largest[1] / length.powi(2);
+            largest[0] = if turns > 0.0 { turns } else { (self.worst().1 / length).max(f64::MIN_POSITIVE) };
+        }
+        if !(largest[1] > 0.0) {
+            largest[1] = largest[0] * length.powi(2);
+        }
+        largest
     }
 
     /// Velocities and accelerations of the frame at a configuration.
