@@ -271,7 +271,8 @@ fn killed_run_is_resumed_and_leaves_the_results_of_one_that_was_not() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
     fs::write(here.join("swing.toml"), SWING).unwrap();
-    let start = ["run", "swing.toml", "--checkpoint", "50 steps", "--out"];
+    let start =
+        ["run", "swing.toml", "--checkpoint", "50 steps", "--no-report", "--vtk", "--profile", "--out"];
     let whole = run(here, &[&start[..], &["whole"]].concat());
     assert_eq!(whole.code, Some(0), "{whole:?}");
 
@@ -316,6 +317,9 @@ fn killed_run_is_resumed_and_leaves_the_results_of_one_that_was_not() {
     for key in ["status", "rows", "final", "counts", "energy"] {
         assert_eq!(summary("whole")[key], summary("killed")[key], "{key}");
     }
+    // what was asked for when it began still is
+    assert!(here.join("killed/vtk.pvd").exists() && !here.join("killed/report.html").exists());
+    assert!(summary("killed")["profile"].as_array().is_some_and(|p| !p.is_empty()), "{}", summary("killed"));
     assert!(!here.join("killed/checkpoint").exists() && !here.join("killed/.checkpoint.tmp").exists());
 }
 

@@ -117,6 +117,9 @@ pub(crate) fn columns<const N: usize>(
                 let hint = if cell.text.contains(',') { ": write a decimal point" } else { "" };
                 inside(n, cell, &format!("`{}` is not a number{hint}", cell.text))
             })?;
+            if !number.is_finite() {
+                return Err(inside(n, cell, &format!("`{}` is not a finite number", cell.text)));
+            }
             *x = match unit.is_empty() {
                 true => number,
                 false => kind.parse(&format!("{} {unit}", cell.text)).map_err(|e| inside(n, cell, &e))?,

@@ -462,7 +462,9 @@ impl Model {
 
     /// Where a node is, in words.
     pub(crate) fn place_name(&self, node: NodeId) -> String {
-        let name = |p: &Arc<dyn Part>| p.place_of(node).map(|place| format!("`{}` {place}", p.name()));
+        let name = |p: &Arc<dyn Part>| {
+            p.place_of(node).map(|place| format!("`{}` {place}", p.name()).trim_end().to_string())
+        };
         self.parts.iter().find_map(name).unwrap_or_else(|| format!("node {}", node.0))
     }
 

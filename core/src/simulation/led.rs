@@ -30,6 +30,18 @@ impl Simulation {
         self.lead().and_then(|()| if forces { self.find_forces() } else { Ok(()) }).is_ok()
     }
 
+    /// Lets inputs set out for where they are to be at time `end`: motions may go on with another acceleration than they came with,
+    /// and so with another power.
+    pub(super) fn set_out(&mut self, end: f64) {
+        if !(end > self.state.t) {
+            return;
+        }
+        self.depart(end);
+        if self.keep_audit && !self.model.inputs().is_empty() && self.led_to_end() {
+            self.power = self.model.power(&self.scratch.at(), &self.scratch.lambda);
+        }
+    }
+
     /// Whether velocities at the end of the step are off what motions lead to by a share of them that shows in energies.
     fn strays(&mut self) -> bool {
         let (model, at, system) = (&*self.model, self.state.at(), &mut self.work.system);

@@ -256,6 +256,7 @@ impl Simulation {
             return Ok(End::Stopped { by: "observer".into() });
         }
         self.sampled.1 = 1;
+        self.set_out(end);
         told(self.move_on(end, interval, observer))
     }
 
@@ -273,10 +274,6 @@ impl Simulation {
         self.check_times(end, interval)?;
         let start = self.sampled.0;
         self.depart(end);
-        // motions may set out with another acceleration than they came with
-        if self.keep_audit && !self.model.inputs().is_empty() && self.led_to_end() {
-            self.power = self.model.power(&self.scratch.at(), &self.scratch.lambda);
-        }
         // times that differ by less than this are the same: no step of the size of rounding. To call them so mustn't move
         // what is driven
         let short = match self.integrator.options().stepping {

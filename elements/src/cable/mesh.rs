@@ -79,7 +79,10 @@ pub(super) fn counted(field: &str, elements: usize) -> Result<usize, BuildError>
     if (1..=MOST_ELEMENTS).contains(&elements) {
         return Ok(elements);
     }
-    let message = format!("`elements` must be between 1 and {MOST_ELEMENTS}, not {elements}");
+    let message = format!(
+        "`elements` must be between 1 and {MOST_ELEMENTS}, not {elements}: give the number of elements, or their lengths by \
+         `mesh`"
+    );
     Err(BuildError::at(field, message))
 }
 

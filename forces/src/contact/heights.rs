@@ -131,9 +131,14 @@ impl Heights {
         {
             let cells: Vec<Result<f64, _>> = line.split(',').map(|c| c.trim().parse::<f64>()).collect();
             match cells[..] {
-                [Ok(x), Ok(y), Ok(z)] => rows.push([x, y, z]),
+                [Ok(x), Ok(y), Ok(z)] if [x, y, z].iter().all(|x| x.is_finite()) => rows.push([x, y, z]),
                 _ if rows.is_empty() && cells.iter().all(Result::is_err) => {}
-                _ => return Err(wrong(format!("line {} isn't `x, y, z`: three numbers in metres", k + 1))),
+                _ => {
+                    return Err(wrong(format!(
+                        "line {} isn't `x, y, z`: three finite numbers in metres",
+                        k + 1
+                    )));
+                }
             }
         }
         let lines = |c: usize| {

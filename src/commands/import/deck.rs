@@ -159,6 +159,16 @@ impl<'a> Deck<'a> {
         }
     }
 
+    /// A number of a row that must be above zero.
+    pub fn positive(&self, row: &Row, k: usize, what: &str) -> Result<f64, Fault> {
+        let x = self.number(row, k, what)?;
+        if x > 0.0 {
+            return Ok(x);
+        }
+        let message = format!("the {what} must be above 0, not {x}");
+        Err(self.word_fault(&message, self.word(row, k, what)?))
+    }
+
     /// An option by one of its names, the last one if it is given several times.
     pub fn option(&self, names: &[&str]) -> Option<&Row> {
         let named =

@@ -94,7 +94,8 @@ pub(super) fn records(
     let mut places = Vec::new();
     for word in deck.outputs.iter().flat_map(|row| &row.words) {
         let said = word.text.to_lowercase();
-        if said.starts_with("fairten") || said.starts_with("anchten") {
+        let end = ["fairten", "anchten"].iter().find_map(|what| said.strip_prefix(what));
+        if end.is_some_and(|id| lines.iter().any(|l| l.name == format!("line{id}"))) {
             continue;
         }
         let of =

@@ -70,9 +70,9 @@ pub(super) fn line_type<'a>(deck: &Deck<'_>, row: &'a Row) -> Result<LineType<'a
     let fluid = [number(6, "drag coefficient Cd")?, number(7, "Ca")?, number(8, "CdAx")?, number(9, "CaAx")?];
     Ok(LineType {
         row,
-        diameter: number(1, "diameter")?,
-        mass: number(2, "mass per length")?,
-        ea: number(3, "stiffness EA")?,
+        diameter: deck.positive(row, 1, "diameter")?,
+        mass: deck.positive(row, 2, "mass per length")?,
+        ea: deck.positive(row, 3, "stiffness EA")?,
         damping: number(4, "damping BA or -zeta")?,
         ei: number(5, "bending stiffness EI")?,
         fluid,
@@ -136,7 +136,7 @@ pub(super) fn line<'a>(
     let ends =
         [ends(deck, deck.word(row, a.0, a.1)?, points)?, ends(deck, deck.word(row, b.0, b.1)?, points)?];
     let (length, segments) =
-        (deck.number(row, 4, "unstretched length")?, deck.number(row, 5, "number of segments")?);
+        (deck.positive(row, 4, "unstretched length")?, deck.positive(row, 5, "number of segments")?);
     // a ratio is that of the shortest wave of a segment, as MoorDyn has it
     let damping = match found.damping {
         ratio if ratio < 0.0 => -ratio * length / segments.max(1.0) * (found.ea * found.mass).sqrt(),

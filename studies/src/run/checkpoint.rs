@@ -3,6 +3,7 @@
 //! The file is replaced as a whole, so that there is always one that can be read. It holds the simulation and everything
 //! recorded so far, with every bit of every number, behind a line that says which program wrote it.
 
+use super::leave::Leaves;
 use super::ranges::Range;
 use super::recorder::Recorder;
 use super::shapes::Shape;
@@ -48,6 +49,14 @@ impl FromStr for Every {
     }
 }
 
+/// What was asked of a run, and is asked of it still when it goes on.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+pub(crate) struct Wishes {
+    pub every: Every,
+    pub leaves: Leaves,
+    pub profile: bool,
+}
+
 /// What a checkpoint file holds.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Saved<'a> {
@@ -55,7 +64,7 @@ pub(crate) struct Saved<'a> {
     pub scene: u32,
     /// What the scene was called.
     pub name: Cow<'a, str>,
-    pub every: Every,
+    pub wishes: Wishes,
     pub simulation: Checkpoint,
     pub table: Cow<'a, Table>,
     pub shapes: Cow<'a, [Shape]>,
@@ -76,7 +85,7 @@ pub(crate) struct Saver {
     path: PathBuf,
     scene: u32,
     name: String,
-    every: Every,
+    wishes: Wishes,
     pub warnings: Vec<String>,
     flutter: f64,
     /// Time spent before this process.
@@ -96,7 +105,7 @@ impl Saver {
     pub(crate) fn new(
         folder: &RunFolder,
         name: &str,
-        every: Every,
+        wishes: Wishes,
         (flutter, steps): (f64, u64),
         warnings: &[String],
         (before, stopwatch): (Elapsed, Stopwatch),
@@ -105,7 +114,7 @@ impl Saver {
             path: folder.checkpoint_file(),
             scene: scene_checksum(folder)?,
             name: name.to_string(),
-            every,
+            wishes,
             warnings: warnings.to_vec(),
             flutter,
             before,
@@ -124,7 +133,7 @@ impl Saver {
     /// Whether one is due; `ending` says that the run is about to be interrupted. Those by steps come at the same steps
     /// whatever happens.
     pub(crate) fn is_due(&self, ending: bool) -> bool {
-        match self.every {
+        match self.wishes.every {
             Every::Time(time) => ending || self.last.elapsed() >= time,
             Every::Steps(n) => self.steps.is_multiple_of(n),
         }
@@ -136,7 +145,7 @@ impl Saver {
         let saved = Saved {
             scene: self.scene,
             name: Cow::Borrowed(&self.name),
-            every: self.every,
+            wishes: self.wishes,
             simulation,
             table: Cow::Borrowed(&recorder.table),
             shapes: Cow::Borrowed(&recorder.kept.shapes),

@@ -7,9 +7,10 @@ use super::{Outcome, page};
 use crate::certificate::statement::Certificate;
 use ropewalk_report::{FieldRecord, OutputError, Page, RunFolder, vtk};
 use ropewalk_scene::SceneFile;
+use serde::{Deserialize, Serialize};
 
 /// Which files a run leaves behind beside scene, history, shapes, tables and summary.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Leaves {
     /// `report.html`, and what it is made of: `field.npy`, `bodies.npy` and `forces.npy`, and `steps.csv`.
     pub report: bool,

@@ -38,7 +38,7 @@ pub use summary::{Counts, CriticalLoad, EnergyTotals, Happened, ProfileEntry, St
 pub use view::{page_of, report_of};
 
 use crate::error::Error;
-use checkpoint::Saver;
+use checkpoint::{Saver, Wishes};
 use prepare::locked;
 use ropewalk_report::{
     Elapsed, FolderLock, Page, Progress, ProgressMode, RunFolder, Stopwatch, Table, TableWriter, Watch,
@@ -142,7 +142,8 @@ pub(crate) fn run_showing(
             (Started::Dynamics(s, flutter, _), Some(every)) => {
                 let state = (*flutter, s.work.counts.steps);
                 let clock = (before, stopwatch);
-                let saver = Saver::new(&folder, file.name(), every, state, &warnings.all, clock)?;
+                let wishes = Wishes { every, leaves: options.leaves, profile: options.profile };
+                let saver = Saver::new(&folder, file.name(), wishes, state, &warnings.all, clock)?;
                 recorder.saver = Some(saver);
             }
             (_, Some(_)) => {
@@ -158,7 +159,7 @@ pub(crate) fn run_showing(
 }
 
 /// Goes on with the run in the folder `options.out`, from its last checkpoint. What it recorded after that is computed
-/// again. Checkpoints go on as before unless the options say otherwise.
+/// again. It leaves behind what was asked for when it began, and checkpoints go on as before unless the options say otherwise.
 ///
 /// # Errors
 /// There is no checkpoint, or it belongs to another scene or another version of the program; another run is at work there.
@@ -172,16 +173,17 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     let started = Started::restored(&file, saved.simulation.clone(), saved.flutter)?;
     let Started::Dynamics(simulation, ..) = &started else { unreachable!("only runs in time are resumed") };
     let mut recorder = Recorder::new(file.scene(), file.records(&simulation.model)?);
-    recorder.watch_steps(options.leaves, &started);
-    if options.leaves.field() {
+    let Wishes { leaves, profile, .. } = saved.wishes;
+    recorder.watch_steps(leaves, &started);
+    if leaves.field() {
         recorder.kept.want_field(&file.scene().run, started.scenery(&file));
         recorder.kept.live_in(&folder);
     }
     recorder.take_up(&saved).map_err(Fault::new)?;
     let before = Elapsed { cpu_s: saved.cpu_s, wall_s: saved.wall_s };
-    let every = options.checkpoint.unwrap_or(saved.every);
+    let wishes = Wishes { every: options.checkpoint.unwrap_or(saved.wishes.every), ..saved.wishes };
     let state = (saved.flutter, simulation.work.counts.steps);
-    let saver = Saver::new(&folder, &saved.name, every, state, &saved.warnings, (before, stopwatch))?;
+    let saver = Saver::new(&folder, &saved.name, wishes, state, &saved.warnings, (before, stopwatch))?;
     recorder.saver = Some(saver);
     recorder.writer = Some(TableWriter::resume(&folder.history_file(), &recorder.table)?);
     // what it says is of rows that are computed again
@@ -194,10 +196,10 @@ pub fn resume(options: &RunOptions, warn: &mut dyn FnMut(&str)) -> Result<Outcom
     recorder.warnings = Warnings { all: saved.warnings.to_vec(), tell: Some(warn) };
     recorder.watch = options.watch;
     let notes = manifest::notes(file.scene(), &simulation.model);
-    let (is_resumed, leaves) = (true, options.leaves);
+    let is_resumed = true;
     let job =
         Job { file: &file, folder, recorder, stopwatch, before, is_resumed, notes, leaves, _lock: lock };
-    Ok(job.complete(Ok(started), options.profile))
+    Ok(job.complete(Ok(started), profile || options.profile))
 }
 
 /// A run from where everything is ready for it to where everything is written.
