@@ -10,6 +10,9 @@ use std::f64::consts::TAU;
 use std::io::Read;
 use std::path::PathBuf;
 
+/// More waves than any sea needs: the time that their table takes goes with the square of their number.
+const MOST: usize = 10_000;
+
 /// Waves on the water, by linear (Airy) theory.
 ///
 /// Give one of `regular`, `jonswap`, `pierson_moskowitz`, `white`, `components` and `measured`. The water's `level` is the surface without
@@ -41,7 +44,7 @@ pub struct WavesSpec {
     /// How directions spread about the mean. Default: all waves have the same direction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spreading: Option<SpreadingSpec>,
-    /// Number of regular waves that make a spectrum.
+    /// Number of regular waves that make a spectrum, 10000 at most.
     pub count: usize,
     /// How their frequencies are chosen.
     pub sampling: WaveSampling,
@@ -336,6 +339,11 @@ impl WavesSpec {
         if single && self.spreading.is_some() {
             let message = "`spreading` is for spectra: give each of the `components` its `direction`";
             return Err(at(".spreading", message.into()));
+        }
+        if self.count > MOST {
+            let message =
+                format!("`count` must be between 1 and {MOST}, not {}: some hundreds make a sea", self.count);
+            return Err(at(".count", message));
         }
         positive("lattice_error", self.lattice_error).map_err(|e| e.of("water.waves.lattice_error"))?;
         Ok(())

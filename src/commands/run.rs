@@ -36,7 +36,7 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "RECORD[@TIME]")]
     of: Option<String>,
     /// Wall time that the search of `--accuracy` may take
-    #[arg(long, value_name = "TIME", default_value = "10 min", value_parser = super::cost::time)]
+    #[arg(long, value_name = "TIME", requires = "accuracy", default_value = "10 min", value_parser = super::cost::time)]
     budget: Duration,
     /// Show the course of a record while it runs, such as hose.end.z
     #[arg(long, value_name = "RECORD")]

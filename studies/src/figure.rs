@@ -1,6 +1,7 @@
 //! Figures of one's own: columns of a history, or of the table of a sweep, over another column.
 
 use crate::error::Error;
+use crate::run::Status;
 use ropewalk_report::plot::Raster;
 use ropewalk_report::{LinePlot, Mark, OutputError, Panels, RunFolder, Series, cells};
 use ropewalk_scene::Fault;
@@ -157,7 +158,13 @@ impl Sheet {
         })
     }
 
+    /// A value; of a run of a sweep that didn't come to its end none, wherever it ended.
     fn number(&self, row: &[String], k: usize) -> f64 {
+        let status = self.parameters.end;
+        let ended = [Status::Finished, Status::Stopped].map(|s| s.to_string());
+        if !self.parameters.is_empty() && k > status && !ended.contains(&row[status]) {
+            return f64::NAN;
+        }
         row[k].trim().parse().unwrap_or(f64::NAN)
     }
 
@@ -273,7 +280,7 @@ mod tests {
     fn runs_of_a_sweep_are_curves_over_a_parameter() {
         let folder = tempfile::tempdir().unwrap();
         let text = "run,speed [m/s],law,status,final end.z [m],message\n\
-                    a,2,one,finished,-1,\nb,1,one,finished,-2,\nc,1,two,finished,-3,\"x, y\"\nd,2,two,failed,,\n";
+                    a,2,one,finished,-1,\nb,1,one,finished,-2,\nc,1,two,finished,-3,\"x, y\"\nd,2,two,failed,-9,\n";
         std::fs::write(folder.path().join("table.csv"), text).unwrap();
         let panels = figure(folder.path(), &strings(&["end.z"]), None, Style::Screen).unwrap();
         let plot = &panels.panels[0];
