@@ -6,7 +6,6 @@ use ropewalk::History;
 use ropewalk_scene::{Evaluation, Jonswap, Sea, WaveComponent, WaveSampling, WaveStretching, WavesSpec};
 use serde_json::Value;
 use std::f64::consts::TAU;
-use std::fmt::Write;
 
 fn read(name: &str) -> Value {
     let path = format!("{}/tests/data/sea/{name}.json", env!("CARGO_MANIFEST_DIR"));
