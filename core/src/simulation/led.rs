@@ -19,11 +19,8 @@ impl Simulation {
     /// Makes the scratch state the one at the end of the step with the velocities that motions lead to, of bodies with
     /// the forces as well, by which they bring energy in; whether there are such motions, and it could be done.
     pub(super) fn led_to_end(&mut self) -> bool {
-        if !self.model.is_led() {
-            return false;
-        }
         let forces = self.work.norms.groups.iter().all(|group| group.single);
-        if !forces && !self.strays() {
+        if !self.model.is_led() || !self.strays(forces) {
             return false;
         }
         self.scratch.clone_from(&self.state);
@@ -42,8 +39,9 @@ impl Simulation {
         }
     }
 
-    /// Whether velocities at the end of the step are off what motions lead to by a share of them that shows in energies.
-    fn strays(&mut self) -> bool {
+    /// Whether velocities at the end of the step are off what motions lead to by a share of them that shows in energies: by the
+    /// constraints that move, or by all.
+    fn strays(&mut self, all: bool) -> bool {
         let (model, at, system) = (&*self.model, self.state.at(), &mut self.work.system);
         let places = model.nodes().iter().filter(|n| n.kind.has_position()).flat_map(|n| n.v..n.v + 3);
         let fastest = places.map(|i| self.state.v[i].abs()).fold(0.0, f64::max);
@@ -52,7 +50,7 @@ impl Simulation {
         let most = |kind: RowKind| {
             STRAYS * if kind == RowKind::Position { fastest } else { fastest / model.length() }
         };
-        !model.moving_constraints().all(|(c, constraint)| {
+        !model.constraints().iter().enumerate().filter(|(_, c)| all || c.moves()).all(|(c, constraint)| {
             let rates = &mut rates[..constraint.rows().len()];
             model.constraint_rate(c, &at, system, rates);
             rates.iter().zip(constraint.rows()).all(|(rate, kind)| rate.abs() <= most(*kind))
