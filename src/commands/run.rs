@@ -97,6 +97,7 @@ impl RunArgs {
             watch,
             leaves,
             follow: self.watch.clone(),
+            inputs_stay: false,
         };
         run_scene(file, &options, &mut warn)
     }

@@ -175,6 +175,25 @@ fn a_run_from_what_another_left_behind_is_the_same() {
     assert!(text(folder.path().join("first/history.csv")) != text(folder.path().join("third/history.csv")));
 }
 
+/// Files that a scene names come along: the folder holds all that the run was made of.
+#[test]
+fn a_run_goes_again_without_the_files_that_its_scene_named() {
+    let here = folder();
+    let scene = "[run]\nduration = 1\n[solver]\nproject = true\n[[elements]]\ntype = \"point_mass\"\nname = \"ball\"\nmarker = [0, 0, 0]\nmass = 1\n\
+                 [[constraints]]\ntype = \"driving\"\nname = \"hand\"\nmarker = \"ball\"\nmotion = \"path\"\n\
+                 [[motions]]\ntype = \"table\"\nname = \"path\"\nfile = \"path.csv\"\n\
+                 [[records]]\ntype = \"position\"\nof = \"ball\"\n";
+    fs::write(here.path().join("scene.toml"), scene).unwrap();
+    fs::write(here.path().join("path.csv"), "t,x\n0,0\n0.25,0\n0.5,0.1\n1,0\n").unwrap();
+    done(run(here.path(), &["run", "scene.toml", "--out", "one"]));
+    fs::remove_file(here.path().join("path.csv")).unwrap();
+    fs::rename(here.path().join("one"), here.path().join("elsewhere")).unwrap();
+    done(run(here.path(), &["run", "elsewhere/scene.toml", "--out", "two"]));
+    let history = |folder: &str| text(here.path().join(folder).join("history.csv"));
+    assert_eq!(history("elsewhere"), history("two"));
+    assert!(text(here.path().join("two/scene.toml")).contains("file = \"inputs/path.csv\""));
+}
+
 #[test]
 fn results_are_never_overwritten() {
     let folder = folder();

@@ -106,7 +106,10 @@ impl Document {
 
     /// Makes the paths of files that the scene names, under the key `file`, start from this folder.
     pub fn files_from(&mut self, folder: &Path) {
-        files_from(&mut self.root, folder);
+        rename_files(&mut self.root, &mut |path| {
+            let whole = folder.join(path);
+            std::path::absolute(&whole).unwrap_or(whole).display().to_string()
+        });
     }
 
     /// What stands at a path like `elements[2].section`, if anything does.
@@ -289,6 +292,13 @@ impl Document {
     pub fn to_toml(&self) -> String {
         write::document(self.table())
     }
+
+    /// The same with other paths of the files that the scene names.
+    pub fn to_toml_with_files(&self, rename: &mut dyn FnMut(&str) -> String) -> String {
+        let mut root = self.root.clone();
+        rename_files(&mut root, rename);
+        root.as_table().map(write::document).unwrap_or_default()
+    }
 }
 
 fn files<'a>(value: &'a Value, found: &mut Vec<&'a str>) {
@@ -306,20 +316,17 @@ fn files<'a>(value: &'a Value, found: &mut Vec<&'a str>) {
     }
 }
 
-fn files_from(value: &mut Value, folder: &Path) {
+fn rename_files(value: &mut Value, rename: &mut dyn FnMut(&str) -> String) {
     match &mut value.kind {
         Kind::Table(table) => {
             for (key, value) in &mut table.0 {
                 match &mut value.kind {
-                    Kind::String(path) if key.name == "file" => {
-                        let whole = folder.join(&*path);
-                        *path = std::path::absolute(&whole).unwrap_or(whole).display().to_string();
-                    }
-                    _ => files_from(value, folder),
+                    Kind::String(path) if key.name == "file" => *path = rename(path),
+                    _ => rename_files(value, rename),
                 }
             }
         }
-        Kind::Array(list) => list.iter_mut().for_each(|value| files_from(value, folder)),
+        Kind::Array(list) => list.iter_mut().for_each(|value| rename_files(value, rename)),
         _ => {}
     }
 }

@@ -90,7 +90,7 @@ pub fn write_effects(
     let folder = NewFolder::create(options.out.clone(), &format!("{}-effects", file.name()))?;
     let stopwatch = Stopwatch::start();
     let ledger = effects(file.scene(), record, options)?;
-    let (folder, _lock) = folder.keep(file, &manifest)?;
+    let (folder, _lock) = folder.keep(file, &manifest, true)?;
     report::write(&folder, &ledger)?;
     let pictures = pictures::draw(&folder, file.title(), &ledger, options.accuracy, warn);
     let report = report::report(file, &ledger, options.accuracy, &folder, &pictures, stopwatch.elapsed());

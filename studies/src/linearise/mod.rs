@@ -65,7 +65,7 @@ pub fn write_linearised(
     let (model, manifest) = prepare(file, warn)?;
     let folder = NewFolder::create(options.out.clone(), &format!("{}-linearised", file.name()))?;
     let linearised = find(file.scene(), model, options).map_err(|e| e.in_file(file))?;
-    let (folder, _lock) = folder.keep(file, &manifest)?;
+    let (folder, _lock) = folder.keep(file, &manifest, true)?;
     let report = files::write(&folder, file.title(), &linearised, warn)?;
     Ok(LineariseOutcome { folder, linearised, report })
 }

@@ -114,7 +114,7 @@ pub fn write_modes(
     }
     let modal = found?;
     modal.warnings.iter().for_each(|w| warn(w));
-    let (folder, _lock) = folder.keep(file, &manifest)?;
+    let (folder, _lock) = folder.keep(file, &manifest, true)?;
     modal.table().write(&folder.table_file("modes")?)?;
     let pictures = pictures::draw(&folder, &modal, warn);
     page::page(file, &modal).write(&folder.report_file()).unwrap_or_else(|e| warn(&e.to_string()));

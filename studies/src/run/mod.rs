@@ -64,6 +64,9 @@ pub struct RunOptions {
     pub leaves: Leaves,
     /// A column of the history whose course the progress shows, such as `hose.end.z`.
     pub follow: Option<String>,
+    /// Whether files that the scene names stay where they are; else they are copied into `inputs/` of the folder, so that it holds all
+    /// that the run was made of.
+    pub inputs_stay: bool,
 }
 
 /// How a run ended and where its results are.
@@ -127,7 +130,7 @@ pub(crate) fn run_showing(
         Err(e) if e.is_input() => return Err(e.in_file(file)),
         other => other,
     };
-    let (folder, lock) = folder.keep(file, &manifest)?;
+    let (folder, lock) = folder.keep(file, &manifest, !options.inputs_stay)?;
     recorder.writer = Some(TableWriter::create(&folder.history_file(), &recorder.table)?);
     recorder.show(progress(scene.run.duration));
     let before = Elapsed::default();

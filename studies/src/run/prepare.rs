@@ -39,15 +39,45 @@ impl NewFolder {
         Ok(NewFolder { folder: RunFolder::at(out)?, lock, is_new })
     }
 
-    /// Begins it with the scene and what it consists of.
+    /// Begins it with the scene and what it consists of, with copies of the files that the scene names if they are asked for.
     pub(crate) fn keep(
         mut self,
         file: &SceneFile,
         manifest: &Manifest,
+        copies: bool,
     ) -> Result<(RunFolder, Option<FolderLock>), OutputError> {
-        self.folder.write_scene(&file.document().to_toml())?;
+        let scene = if copies { self.with_copies(file)? } else { file.document().to_toml() };
+        self.folder.write_scene(&scene)?;
         self.folder.write_manifest(manifest)?;
         Ok((self.folder.clone(), self.lock.take()))
+    }
+
+    /// Copies the files that a scene names into `inputs/`; the scene with their new paths.
+    fn with_copies(&self, file: &SceneFile) -> Result<String, OutputError> {
+        let mut known: Vec<(String, String)> = Vec::new();
+        let mut trouble = None;
+        let scene = file.document().to_toml_with_files(&mut |path| {
+            if let Some((_, name)) = known.iter().find(|(old, _)| old == path) {
+                return name.clone();
+            }
+            // a pipe was read already
+            let from = Path::new(path);
+            let Some(own) = from.file_name().filter(|_| from.is_file()) else { return path.into() };
+            let own = own.to_string_lossy();
+            let free = |name: &String| known.iter().all(|(_, other)| other != name);
+            let numbered = (2..).map(|k| format!("inputs/{k}-{own}"));
+            let name =
+                std::iter::once(format!("inputs/{own}")).chain(numbered).find(free).unwrap_or_default();
+            let to = self.folder.path().join(&name);
+            let copied =
+                to.parent().map_or(Ok(()), std::fs::create_dir_all).and_then(|()| std::fs::copy(from, &to));
+            if let Err(e) = copied {
+                trouble = Some(OutputError::io("write", &to)(e));
+            }
+            known.push((path.into(), name.clone()));
+            name
+        });
+        trouble.map_or(Ok(scene), Err)
     }
 }
 

@@ -140,6 +140,7 @@ impl Runner {
             watch: self.watch,
             // many runs are looked at together, by what the study makes of them
             leaves: Leaves { report: false, ..Leaves::default() },
+            inputs_stay: true,
             ..RunOptions::default()
         };
         let progress = |t_end: f64| self.progress.begin(name, t_end);
