@@ -33,7 +33,7 @@ pub struct Hull<R = f64> {
 }
 
 /// Most parts of a hull.
-const PARTS: usize = 64;
+const PARTS: usize = 1000;
 /// Where the surface cuts a part, it takes loads of a whole station: the error goes with the square of the part's length, and is a
 /// thousandth of the load of the hull where this is the length over `√(l / k)`, with the reach `l` of waves along the hull.
 const CUT: f64 = 0.15;

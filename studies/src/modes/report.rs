@@ -152,7 +152,8 @@ fn buckling(model: &Model, critical: &Critical) -> String {
             where_it_moves(model, shape)
         ),
         _ => format!(
-            "However large all loads together grow ({loads}), linear buckling finds no critical factor"
+            "Linear buckling finds no critical factor of all loads together ({loads}); a path of equilibria under loads that grow, \
+             `analysis = \"statics\"`, tells for sure"
         ),
     }
 }

@@ -201,7 +201,7 @@ pub fn read(folder: &RunFolder) -> Result<Saved<'static>, Error> {
         .map_err(|e| damaged(&format!("it can't be read by this program ({e})")))?;
     if saved.scene != scene_checksum(folder)? {
         let message =
-            format!("scene.toml in {shown} was changed after the checkpoint, which belongs to the old one");
+            format!("scene.toml or a file of inputs/ in {shown} was changed after the checkpoint, which belongs to the old one");
         return Err(Fault::new(message).with_help("run the new scene with `ropewalk run`").into());
     }
     Ok(saved)
@@ -236,9 +236,17 @@ fn without_checkpoint(folder: &RunFolder) -> Fault {
 }
 
 fn scene_checksum(folder: &RunFolder) -> Result<u32, Error> {
-    let path: &Path = &folder.scene_file();
-    let text = std::fs::read(path).map_err(OutputError::io("read", path))?;
-    Ok(CRC.checksum(&text))
+    let read = |path: &Path| std::fs::read(path).map_err(OutputError::io("read", path));
+    let mut digest = CRC.digest();
+    digest.update(&read(&folder.scene_file())?);
+    // with the copies of what it names, in an order of their own
+    let inputs = std::fs::read_dir(folder.path().join("inputs")).into_iter().flatten().flatten();
+    let mut inputs: Vec<PathBuf> = inputs.map(|entry| entry.path()).collect();
+    inputs.sort();
+    for path in &inputs {
+        digest.update(&read(path)?);
+    }
+    Ok(digest.finalize())
 }
 
 #[cfg(test)]

@@ -23,6 +23,8 @@ const MOST_TURNS: usize = 200;
 /// How near to a critical factor the stiffness is looked at, by the loads that are added until then; stages on the way there.
 const NEAR: f64 = 0.9;
 const STAGES: usize = 4;
+/// How far behind it the directions are counted again.
+const BEHIND: f64 = 1.1;
 /// What is left of it there at most: a tenth, if it falls with the loads.
 const GONE: f64 = 0.5;
 /// Corrections by Newton's method on the way, and the size of the last one.
@@ -138,6 +140,13 @@ impl Path<'_> {
             if !self.closes(statics, &mut there, load)? {
                 return Ok(true);
             }
+        }
+        if let Some(count) = self.pencil(statics, &there, load)?.below() {
+            // by the law of inertia: a direction is lost or won there
+            let to = BEHIND * (factor - 1.0);
+            self.advance(&mut there, to - load, self.d);
+            let closes = self.closes(statics, &mut there, to)?;
+            return Ok(!closes || self.pencil(statics, &there, to)?.below() != Some(count));
         }
         let after = self.stiffness(statics, &there, load, shape)?;
         Ok(after.is_some_and(|after| after.abs() < GONE * before.abs()))

@@ -32,6 +32,7 @@ const STARTS: usize = 4;
 /// How far a shift goes aside from where the matrix is singular, and how often.
 const ASIDE: f64 = 1.37;
 const MOST_ASIDE: usize = 4;
+const BESIDE: f64 = 0.1;
 
 /// A shift `m` [1/s²] near the lowest eigenvalue that isn't zero: above zero, so that free parts don't make the matrix
 /// singular, and not far above the eigenvalues that are asked for. Leaves `K + m M` factored.
@@ -39,15 +40,12 @@ pub(super) fn shift(p: &mut Pencil) -> Result<f64, ModesError> {
     let (mut m, mut lowered, mut aside) = (guess(p).ok().flatten().unwrap_or(1e-6 * p.fastest), 0, 0);
     for _ in 0..12 {
         let seen = p.factor(0.0, m).map_err(ModesError::Solver).and_then(|()| lowest(p, m));
-        let lowest = match seen {
-            Ok(lowest) => lowest,
-            // an unstable mode grows at just this rate
-            Err(ModesError::Solver(_)) if aside < MOST_ASIDE => {
-                (m, aside) = (ASIDE * m, aside + 1);
-                continue;
-            }
-            Err(e) => return Err(e),
-        };
+        // an unstable mode grows at just this rate, and would drown all others
+        if aside < MOST_ASIDE && matches!(seen, Err(ModesError::Solver(_)) | Ok((_, true))) {
+            (m, aside) = (ASIDE * m, aside + 1);
+            continue;
+        }
+        let (lowest, _) = seen?;
         if lowest.is_finite() {
             if (0.1 * m..=10.0 * m).contains(&lowest) {
                 break;
@@ -83,8 +81,9 @@ fn guess(p: &mut Pencil) -> Result<Option<f64>, SolveError> {
     Ok((k > 10.0 * m && k.is_finite()).then_some(k))
 }
 
-/// The lowest stiffness seen with the factored shift `m` that isn't zero beside it; infinite if there is none.
-fn lowest(p: &mut Pencil, m: f64) -> Result<f64, ModesError> {
+/// The lowest stiffness seen with the factored shift `m` that isn't zero beside it, infinite if there is none; and whether the shift
+/// lies beside an eigenvalue.
+fn lowest(p: &mut Pencil, m: f64) -> Result<(f64, bool), ModesError> {
     let mut space = Arnoldi::default();
     for _ in 0..STARTS {
         space.start(&mut Inverse(p, m)).map_err(ModesError::Solver)?;
@@ -95,17 +94,18 @@ fn lowest(p: &mut Pencil, m: f64) -> Result<f64, ModesError> {
                 space.step(&mut Inverse(p, m)).map_err(ModesError::Solver)?;
             }
         }
-        let mut lowest = f64::INFINITY;
+        let (mut lowest, mut beside) = (f64::INFINITY, false);
         let found = space.ritz(p.symmetric, 64).ok_or(ModesError::Eigen)?;
         for ritz in found.iter().filter(|r| r.residual <= 1e-4 * r.size()) {
             let parts = space.vector(&ritz.vector);
             let k: f64 = parts.iter().filter(|x| !x.is_empty()).map(|x| p.energy(x).0).sum();
             if k.abs() > 1e-6 * m {
                 lowest = lowest.min(k.abs());
+                beside |= (k + m).abs() < BESIDE * m;
             }
         }
         if lowest.is_finite() || space.is_closed() || space.turns() >= 80 {
-            return Ok(lowest);
+            return Ok((lowest, beside));
         }
     }
 }
