@@ -159,9 +159,12 @@ impl Statics<'_> {
             }
             self.loose = false;
         }
+        // what has nothing to hold it in some directions may still fall over in others
+        let loose = std::mem::replace(&mut self.loose, true);
         if cold && self.options.stable {
             state.clone_from(&before);
-            if self.creep(state, &mut found, true).is_ok()
+            let c = self.creep(state, &mut found, true);
+            if c.is_ok()
                 && let Ok(mut found) = self.unfold(state, found)
             {
                 let (judged, load) = (std::mem::take(&mut self.judged), self.load(&before));
@@ -172,6 +175,7 @@ impl Statics<'_> {
                 return Ok(found);
             }
         }
+        self.loose = loose;
         *state = before;
         Err(self.explain(state, first))
     }

@@ -20,6 +20,8 @@ use crate::solve::modes::{Mode, slowest};
 
 /// Part of the diagonal of the tangent that is taken for rounding of it, and stands in for stiffness that is missing.
 pub(super) const MARGIN: f64 = 1e-12;
+/// The load of what lies in balance by itself, in parts of the largest stiffness times the length.
+const BALANCED: f64 = 1e-6;
 /// A motion that swings less often than this in the time in which it grows e-fold goes one way [rad].
 const ONE_WAY: f64 = 0.05;
 /// How many eigenvalues are asked for where loads have no potential.
@@ -86,13 +88,14 @@ impl Statics<'_> {
             out.way_out = Some(self.softest(seed));
             return Ok(out);
         }
-        // what a load drives where nothing holds is no equilibrium
+        // what a load drives where nothing holds is no equilibrium; what floats in balance has no load, but rounding of what lifts it
+        let load_felt = load.max(BALANCED * self.stiffest()[0] * self.model.length());
         for x in lowest.iter().take(near) {
             let shape = self.increment(x);
             let work: f64 = shape.iter().zip(&self.system.residual).map(|(d, r)| d * r).sum();
             let position = &self.structure.position;
             let rounding: f64 = shape.iter().zip(position).map(|(d, &p)| MARGIN * w[p] * d * d).sum();
-            if work.abs() > (1e-6 * load * self.size(&shape) * self.model.length()).max(rounding) {
+            if work.abs() > (1e-6 * load_felt * self.size(&shape) * self.model.length()).max(rounding) {
                 out.driven = Some(describe(self.model, &there.q, &shape));
                 return Ok(out);
             }
