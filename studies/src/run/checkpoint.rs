@@ -200,8 +200,9 @@ pub fn read(folder: &RunFolder) -> Result<Saved<'static>, Error> {
     let saved: Saved<'static> = postcard::from_bytes(&body[..body.len() - 4])
         .map_err(|e| damaged(&format!("it can't be read by this program ({e})")))?;
     if saved.scene != scene_checksum(folder)? {
-        let message =
-            format!("scene.toml or a file of inputs/ in {shown} was changed after the checkpoint, which belongs to the old one");
+        let message = format!(
+            "scene.toml or a file of inputs/ in {shown} was changed after the checkpoint, which belongs to the old one"
+        );
         return Err(Fault::new(message).with_help("run the new scene with `ropewalk run`").into());
     }
     Ok(saved)

@@ -1,7 +1,7 @@
 //! Loads at which a path of equilibria loses its stability: they are located, and left for the stable path behind them.
 
 use super::naming::describe;
-use super::outcome::{Critical, CriticalKind, Found, Point, StaticsError};
+use super::outcome::{Critical, CriticalKind, Found, Judgement, Point, StaticsError};
 use super::path::Way;
 use super::problem::Statics;
 use crate::model::node::{difference, retract};
@@ -15,6 +15,17 @@ const CLEAR: u32 = 10;
 const LEAP: f64 = 0.1;
 /// How far behind a critical load the stable path is taken up, in parts of what is left of the way.
 const BEHIND: f64 = 0.02;
+
+/// What lies between a stable equilibrium and an unstable one.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Crossing {
+    /// A critical load.
+    Here,
+    /// Nothing: they are of different paths, between which the iteration has leapt.
+    Leapt,
+    /// A critical load before, from which on it flutters.
+    Swung,
+}
 
 impl Statics<'_> {
     /// Locates the critical point between `here` and the point a step further; `here` becomes the last one before it.
@@ -63,12 +74,13 @@ impl Statics<'_> {
         })
     }
 
-    /// Locates where eigenvalues cross between two equilibria under loads without potential, by bisection of the load; whether
-    /// they do: the two may be of different paths, between which the iteration has leapt.
-    pub(super) fn locate_by_load(&mut self, from: &State, to: &State, found: &mut Found) -> bool {
+    /// Locates where eigenvalues cross between two equilibria under loads without potential, by bisection of the load.
+    pub(super) fn locate_by_load(&mut self, from: &State, to: &State, found: &mut Found) -> Crossing {
         let kept = (self.unstable, self.neutral.clone(), self.doubt.clone(), self.judged.clone());
         let (mut low, mut high, mut judged) = (from.clone(), to.clone(), self.judged.clone());
         let diverges = self.unstable > 0;
+        let swings = |j: &Judgement| j.flutter > 0.0 && j.unstable == 0;
+        let mut below: Option<Judgement> = self.swung.then(Judgement::default);
         for k in 0..HALVINGS {
             let mut middle = low.clone();
             middle.t = 0.5 * (low.t + high.t);
@@ -82,13 +94,23 @@ impl Statics<'_> {
                     judged = self.judged.clone();
                 }
             } else {
+                below = swings(&self.judged).then(|| self.judged.clone());
                 low = middle;
             }
         }
         let (whole, left) = (self.distance(&from.q, &to.q), self.distance(&low.q, &high.q));
         if left > LEAP * whole && left > self.options.tolerance {
             (self.unstable, self.neutral, self.doubt, self.judged) = kept;
-            return false;
+            return Crossing::Leapt;
+        }
+        if let Some(judged) = below.filter(|_| diverges) {
+            // a pair that swings ever wider becomes two that go one way: nothing branches off there, and it was lost before
+            if !self.swung {
+                (self.unstable, self.judged) = (0, judged);
+                let _ = self.locate_by_load(from, &low, found);
+            }
+            (self.unstable, self.neutral, self.doubt, self.judged) = kept;
+            return Crossing::Swung;
         }
         let (kind, shape) = match judged.way_out {
             Some(shape) => (CriticalKind::Bifurcation, shape),
@@ -105,7 +127,7 @@ impl Statics<'_> {
             state,
         });
         (self.unstable, self.neutral, self.doubt, self.judged) = kept;
-        true
+        Crossing::Here
     }
 
     /// Leaves a critical point for the stable path behind it.

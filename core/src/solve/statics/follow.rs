@@ -1,5 +1,6 @@
 //! One equilibrium from a guess, and the path of equilibria along the load.
 
+use super::critical::Crossing;
 use super::outcome::{Found, StaticsError};
 use super::problem::Statics;
 use super::search::FOLD;
@@ -196,7 +197,7 @@ impl Statics<'_> {
         while state.t != t {
             self.model.relabel(state);
             let before = state.clone();
-            let swings = self.judged.flutter > 0.0;
+            let swings = self.judged.flutter > 0.0 || self.swung && self.unstable > 0;
             state.t = if (t - before.t).abs() <= 1.001 * h.abs() { t } else { before.t + h };
             state.t = self.within_a_turn(before.t, state.t);
             let to = state.t;
@@ -208,6 +209,7 @@ impl Statics<'_> {
             let e = match self.step_on(state) {
                 Ok(found) => {
                     sum.add(&found);
+                    self.swung = false;
                     if self.judged.flutter > 0.0 && !swings {
                         let _ = self.locate_by_load(&before, state, &mut sum);
                     } else if self.leapt(&before, state) {
@@ -228,9 +230,21 @@ impl Statics<'_> {
             let beyond = state.clone();
             state.clone_from(&before);
             if self.options.stable && unstable && !self.judged.potential {
-                if self.locate_by_load(&before, &beyond, &mut sum) {
-                    self.leave_last(state, to, &mut sum)?;
-                    continue;
+                self.swung = swings;
+                match self.locate_by_load(&before, &beyond, &mut sum) {
+                    Crossing::Here => {
+                        self.leave_last(state, to, &mut sum)?;
+                        continue;
+                    }
+                    // it goes on as it is, unstable as it was
+                    Crossing::Swung => {
+                        self.swung = true;
+                        (*state, sum.flutter) = (beyond, self.judged.growth());
+                        self.model.settle(state);
+                        h *= 2.0;
+                        continue;
+                    }
+                    Crossing::Leapt => {}
                 }
                 if let Some(back) = self.leave_leapt(&before, &beyond, &mut sum) {
                     *state = back;

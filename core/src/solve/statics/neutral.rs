@@ -41,18 +41,20 @@ impl Statics<'_> {
     /// The `k` vectors of smallest eigenvalues `(K, W)` with the factored tangent `K + m W`, by subspace iteration; in
     /// elimination order.
     pub(super) fn lowest(&mut self, w: &[f64], k: usize) -> Result<Vec<Vec<f64>>, SolveError> {
-        self.lowest_by(w, k, |x| x.abs())
+        self.lowest_by(w, k, k + 2, |x| x.abs())
     }
 
     /// The same, those with unstable directions first.
     pub(super) fn unstable_first(&mut self, w: &[f64], k: usize) -> Result<Vec<Vec<f64>>, SolveError> {
-        self.lowest_by(w, k, |x| if x < -UNSTABLE { -1.0 / x.abs() } else { x.abs() })
+        // beside as many as a body may be free in
+        self.lowest_by(w, k, k + 8, |x| if x < -UNSTABLE { -1.0 / x.abs() } else { x.abs() })
     }
 
     fn lowest_by(
         &mut self,
         w: &[f64],
         k: usize,
+        dimension: usize,
         rank: impl Fn(f64) -> f64,
     ) -> Result<Vec<Vec<f64>>, SolveError> {
         let (s, mut noise) = (&self.structure, Noise::default());
@@ -62,7 +64,7 @@ impl Statics<'_> {
         let inner =
             |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).zip(w).map(|((a, b), w)| a * b * w).sum() };
         let mut space: Vec<Vec<f64>> = Vec::new();
-        for _ in 0..(k + 2).min(self.model.velocities().saturating_sub(self.model.multipliers()).max(k)) {
+        for _ in 0..dimension.min(self.model.velocities().saturating_sub(self.model.multipliers()).max(k)) {
             space.push((0..s.n).map(|_| noise.draw()).collect());
         }
         for _ in 0..5 {

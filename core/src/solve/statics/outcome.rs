@@ -163,6 +163,8 @@ pub(super) struct Judgement {
     /// Rate at which disturbances swing ever wider [1/s], 0 if none does; and their shape.
     pub flutter: f64,
     pub swing: Vec<f64>,
+    /// Rate at which what goes one way grows [1/s], where eigenvalues told.
+    pub divergence: f64,
     /// Whether loads have a potential there.
     pub potential: bool,
     /// What the load moves, since nothing holds it: this is no equilibrium.
@@ -172,6 +174,11 @@ pub(super) struct Judgement {
 }
 
 impl Judgement {
+    /// Rate at which a disturbance grows [1/s]; 0 if none does, or if it isn't known.
+    pub fn growth(&self) -> f64 {
+        self.flutter.max(self.divergence)
+    }
+
     /// Whether its potential is least there, as far as can be told.
     pub fn is_least(&self) -> bool {
         self.potential && self.unstable == 0 && self.neutral.is_empty() && self.doubt.is_none()

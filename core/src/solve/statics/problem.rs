@@ -38,6 +38,8 @@ pub struct Statics<'a> {
     /// Whether tangents are singular on the way, so that all that is free is held by a trace of stiffness: a body that is laid
     /// aslant may spin about its own axis, which isn't that of its equilibrium.
     pub(super) loose: bool,
+    /// Whether the path has lost its stability by flutter, so that what grows on it may also go one way.
+    pub(super) swung: bool,
     /// What the last equilibrium that was found is like.
     pub(super) unstable: usize,
     pub(super) neutral: Vec<Neutral>,
@@ -97,6 +99,7 @@ impl<'a> Statics<'a> {
             flow: Vec::new(),
             free: Vec::new(),
             loose: false,
+            swung: false,
             unstable: 0,
             neutral: Vec::new(),
             doubt: None,

@@ -179,6 +179,7 @@ impl Statics<'_> {
                         let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
                         let pair = square(&mode.quadrature) > 1e-6 * square(&mode.shape);
                         out.unstable += 1 + usize::from(pair);
+                        out.divergence = out.divergence.max(mode.growth);
                         out.way_out.get_or_insert_with(|| mode.shape.clone());
                     } else if mode.growth > out.flutter {
                         out.flutter = mode.growth;
