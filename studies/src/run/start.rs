@@ -361,6 +361,7 @@ impl Done {
         let model = self.model.clone();
         let telling: Vec<_> = model.events().iter().filter(|e| e.only_tells()).collect();
         let mut levels = vec![None; telling.len()];
+        let mut free = 0;
         for k in 0..=steps {
             let before = self.state.t;
             let found = match k {
@@ -375,13 +376,14 @@ impl Done {
             }
             self.critical = search.critical().to_vec();
             let found = found?;
-            for remark in remarks_on(search) {
-                // of several free directions any mixture may be named
-                let head = |text: &str| text.split(" through ").next().unwrap_or_default().to_string();
-                if !self.remarks.iter().any(|old| head(old) == head(&remark)) {
+            // of several free directions another mixture is found at every load: once is enough
+            let count = search.neutral().len();
+            for remark in remarks_on(search).into_iter().skip(free.min(count)) {
+                if !self.remarks.contains(&remark) {
                     self.remarks.push(remark);
                 }
             }
+            free = free.max(count);
             for (event, level) in telling.iter().zip(&mut levels) {
                 let now = event.value(&model, &self.state);
                 if crossed(*level, now, event.direction()) {

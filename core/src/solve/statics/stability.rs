@@ -25,7 +25,7 @@ const BALANCED: f64 = 1e-6;
 /// A motion that swings less often than this in the time in which it grows e-fold goes one way [rad].
 const ONE_WAY: f64 = 0.05;
 /// How many eigenvalues are asked for where loads have no potential.
-const SLOWEST: usize = 8;
+const SLOWEST: usize = 16;
 /// What is so much slower than the fastest of these moves freely: what is left of an equilibrium and rounding make such rates.
 const NEUTRAL: f64 = 1e-5;
 
