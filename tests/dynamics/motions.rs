@@ -356,6 +356,9 @@ fn what_a_motion_leads_is_where_and_as_fast_as_it_says() {
             }
         }
         assert!(worst[0] < 1e-9 && worst[1] < 1e-8 && worst[2] < 1e-5, "{solver}: {worst:?}");
+        // what shakes it brings in what it has
+        let imbalance = h.column("energy.imbalance").expect("energy");
+        assert!(imbalance.iter().all(|x| x.abs() < 1e-3 * 23687.0), "{solver}: {imbalance:?}");
     }
 }
 
@@ -394,5 +397,7 @@ fn a_driven_slider_crank_has_the_energy_of_its_geometry() {
         let found = at(&h, "energy.kinetic", k);
         // what steps do wrong of positions is 1e-6 of them
         assert!((found - right).abs() < 1e-4 * right, "{t}: {found} J, {right} J by geometry");
+        let imbalance = at(&h, "energy.imbalance", k);
+        assert!(imbalance.abs() < 2e-3 * 31.0, "{t}: {imbalance} J from nowhere");
     }
 }

@@ -690,3 +690,82 @@ fn a_frame_of_any_size_follows_the_same_path() {
         }
     }
 }
+
+/// Two rods in a row under a follower load, held upright by springs of 1 N m (Ziegler): the pair that flutters becomes two motions that go
+/// one way at a higher load. Nothing branches off there, and what is told doesn't hang on the steps.
+#[test]
+fn flutter_is_told_whatever_comes_after_it() {
+    let told = [1, 5, 13].map(|steps| {
+        let rod = |name: &str, z: f64| {
+            format!(
+                r#"
+                [[elements]]
+                type = "rigid_body"
+                name = "{name}"
+                position = [0, 0, {z}]
+                mass = 1
+                inertia = [0.0833333333333333, 0.0833333333333333, 1e-3]
+                points = {{ low = [0, 0, -0.5], top = [0, 0, 0.5] }}
+                "#
+            )
+        };
+        let joint = |name: &str, marker: &str, to: &str| {
+            format!(
+                r#"
+                [[constraints]]
+                type = "revolute"
+                name = "{name}"
+                marker = "{marker}"
+                {to}
+                axis = [0, 1, 0]
+                [[forces]]
+                type = "rotational_spring"
+                name = "{name}s"
+                marker = "{marker}"
+                {to}
+                axis = [0, 1, 0]
+                stiffness = 1
+                "#
+            )
+        };
+        let text = format!(
+            r#"
+            gravity = [0, 0, 0]
+            run = {{ analysis = "statics", duration = 8 }}
+            statics = {{ steps = {steps} }}
+            {}
+            {}
+            {}
+            {}
+            [[forces]]
+            type = "point_force"
+            marker = "b.top"
+            local = true
+            force = [0, 0, -1]
+            time = {{ table = {{ t = [0, 100], value = [0, 100] }} }}
+            "#,
+            rod("a", 0.5),
+            rod("b", 1.5),
+            joint("foot", "a.low", ""),
+            joint("knee", "b.low", "to = \"a.top\"")
+        );
+        let h = run(&text, &[]).unwrap_or_else(|e| panic!("{steps} steps: {e}"));
+        let kinds: Vec<CriticalKind> = h.critical.iter().map(|c| c.kind).collect();
+        assert_eq!(kinds, [CriticalKind::Flutter], "{steps} steps: {:?}", h.critical);
+        assert!(h.warnings.iter().any(|w| w.contains("not stable")), "{steps} steps: {:?}", h.warnings);
+        h.critical[0].load_factor
+    });
+    // of uniform rods: M = [[4/3, 1/2], [1/2, 1/3]], K = [[2 - P, P - 1], [-1, 1]]; the square of the trace of M⁻¹K is four times
+    // its determinant
+    let meets = |p: f64| {
+        let det = 4.0 / 9.0 - 0.25;
+        let trace = ((2.0 - p) / 3.0 + 0.5 + 4.0 / 3.0 - (p - 1.0) / 2.0) / det;
+        trace * trace - 4.0 / det
+    };
+    let (mut low, mut high) = (0.0, 3.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if meets(middle) > 0.0 { low = middle } else { high = middle }
+    }
+    assert!(told.iter().all(|p| (p - low).abs() < 1e-4 * low), "{told:?} {low}");
+}

@@ -93,6 +93,12 @@ impl Audit {
         }
         self.size = self.size.max(e.kinetic.abs() + e.potential.abs());
     }
+    /// Adds energies that the trapezoidal rule has missed [J].
+    pub(crate) fn correct(&mut self, more: Power) {
+        self.supplied += more.supplied;
+        self.carried += more.carried;
+        self.dissipated += more.dissipated;
+    }
     /// How much energy has appeared from nowhere, beyond what may be called an error of the integration. `noise` is energy
     /// that doesn't count [J].
     pub fn created(&self, noise: f64) -> Created {

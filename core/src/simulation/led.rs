@@ -5,8 +5,10 @@
 //! and an interpolation takes over what they are off by. Samples and the balance of energy take what the constraints say instead.
 
 use super::Simulation;
+use super::dense::Dense;
 use crate::model::constraint::{MOST_ROWS, RowKind};
 use crate::model::node::retract;
+use crate::model::term::Power;
 use crate::solve::integrator::{Which, agree, agree_in_velocity, move_velocities, way_back};
 use crate::solve::linear::SolveError;
 
@@ -14,17 +16,73 @@ use crate::solve::linear::SolveError;
 const MOST_MOVES: usize = 4;
 /// What velocities are off the constraints by that the balance of energy takes as it is, in parts of the fastest.
 const STRAYS: f64 = 1e-4;
+/// What energy the trapezoidal rule may leave to doubt in a step, in parts of what there is; how often a step is halved for it.
+const ROUGH: f64 = 1e-4;
+const MOST_HALVINGS: u32 = 4;
 
 impl Simulation {
     /// Makes the scratch state the one at the end of the step with the velocities that motions lead to, of bodies with
     /// the forces as well, by which they bring energy in; whether there are such motions, and it could be done.
     pub(super) fn led_to_end(&mut self) -> bool {
-        let forces = self.work.norms.groups.iter().all(|group| group.single);
-        if !self.model.is_led() || !self.strays(forces) {
+        if !self.model.is_led() || !self.is_of_bodies() && !self.strays() {
             return false;
         }
         self.scratch.clone_from(&self.state);
-        self.lead().and_then(|()| if forces { self.find_forces() } else { Ok(()) }).is_ok()
+        self.lead_with_forces().is_ok()
+    }
+
+    fn is_of_bodies(&self) -> bool {
+        self.work.norms.groups.iter().all(|group| group.single)
+    }
+
+    fn lead_with_forces(&mut self) -> Result<(), SolveError> {
+        self.lead()?;
+        if self.is_of_bodies() { self.find_forces() } else { Ok(()) }
+    }
+
+    /// What motions bring in over the last step, or its beginning, by powers inside of it, less what the trapezoidal rule makes of those at its ends, where
+    /// that is rough: no error of position makes the steps of what is led shorter.
+    pub(super) fn brought_in(&mut self, span: [f64; 2], ends: [Power; 2]) -> Power {
+        let rough = Power::between(ends[0], ends[1], 0.5);
+        let h = span[1] - span[0];
+        let net = |p: &Power| p.supplied + p.carried - p.dissipated;
+        let changes = h * (net(&ends[1]) - net(&ends[0])).abs() > ROUGH * self.audit.scale;
+        match changes && self.model.is_led() && self.is_of_bodies() {
+            true => self.mean_power(span, ends, MOST_HALVINGS).map_or(Power::zero(), |mean| Power {
+                dissipated: h * (mean.dissipated - rough.dissipated),
+                supplied: h * (mean.supplied - rough.supplied),
+                carried: h * (mean.carried - rough.carried),
+            }),
+            false => Power::zero(),
+        }
+    }
+
+    /// The power of motions in the scratch state inside the last step, if they lead bodies; the state is left as it is.
+    pub(super) fn power_inside(&mut self) -> Option<Power> {
+        if !self.model.is_led() || !self.is_of_bodies() {
+            return None;
+        }
+        let kept = self.scratch.clone();
+        let found = self.lead_with_forces().is_ok();
+        let power = self.model.power(&self.scratch.at(), &self.scratch.lambda);
+        self.scratch = kept;
+        found.then_some(power)
+    }
+
+    /// The mean power over a part of the last step by Simpson's rule, on halves where that isn't enough.
+    fn mean_power(&mut self, [from, to]: [f64; 2], ends: [Power; 2], halvings: u32) -> Option<Power> {
+        let middle = 0.5 * (from + to);
+        Dense::new(&self.model, &self.previous, &self.state).at(middle, &mut self.scratch);
+        self.lead_with_forces().ok()?;
+        let there = self.model.power(&self.scratch.at(), &self.scratch.lambda);
+        let rough = Power::between(ends[0], ends[1], 0.5);
+        let off = (to - from) * (there.supplied - there.dissipated - rough.supplied + rough.dissipated).abs();
+        if halvings == 0 || off <= ROUGH * self.audit.scale {
+            return Some(Power::between(rough, there, 2.0 / 3.0));
+        }
+        let first = self.mean_power([from, middle], [ends[0], there], halvings - 1)?;
+        let second = self.mean_power([middle, to], [there, ends[1]], halvings - 1)?;
+        Some(Power::between(first, second, 0.5))
     }
 
     /// Lets inputs set out for where they are to be at time `end`: motions may go on with another acceleration than they came with,
@@ -39,9 +97,8 @@ impl Simulation {
         }
     }
 
-    /// Whether velocities at the end of the step are off what motions lead to by a share of them that shows in energies: by the
-    /// constraints that move, or by all.
-    fn strays(&mut self, all: bool) -> bool {
+    /// Whether velocities at the end of the step are off what motions lead to by a share of them that shows in energies.
+    fn strays(&mut self) -> bool {
         let (model, at, system) = (&*self.model, self.state.at(), &mut self.work.system);
         let places = model.nodes().iter().filter(|n| n.kind.has_position()).flat_map(|n| n.v..n.v + 3);
         let fastest = places.map(|i| self.state.v[i].abs()).fold(0.0, f64::max);
@@ -50,7 +107,7 @@ impl Simulation {
         let most = |kind: RowKind| {
             STRAYS * if kind == RowKind::Position { fastest } else { fastest / model.length() }
         };
-        !model.constraints().iter().enumerate().filter(|(_, c)| all || c.moves()).all(|(c, constraint)| {
+        !model.moving_constraints().all(|(c, constraint)| {
             let rates = &mut rates[..constraint.rows().len()];
             model.constraint_rate(c, &at, system, rates);
             rates.iter().zip(constraint.rows()).all(|(rate, kind)| rate.abs() <= most(*kind))

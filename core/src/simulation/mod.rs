@@ -384,6 +384,8 @@ impl Simulation {
             let h = self.state.t - self.previous.t;
             self.accounted = (self.audit, self.power);
             self.audit.add(h, energy, self.power, power);
+            let more = self.brought_in([self.previous.t, self.state.t], [self.power, power]);
+            self.audit.correct(more);
             self.power = power;
             self.work.clocks.stop(Phase::Audit, begin);
         }
@@ -472,9 +474,14 @@ impl Simulation {
         if asked && self.keep_audit && begin < now && now < end {
             let (before, power) = self.accounted;
             let energy = self.model.energy(&self.scratch.at());
-            let then = Power::between(power, self.power, (now - begin) / (end - begin));
+            let straight = Power::between(power, self.power, (now - begin) / (end - begin));
+            let then = self.power_inside().unwrap_or(straight);
             self.shown = before;
             self.shown.add(now - begin, energy, power, then);
+            let kept = self.scratch.clone();
+            let more = self.brought_in([begin, now], [power, then]);
+            self.shown.correct(more);
+            self.scratch = kept;
         }
     }
 
