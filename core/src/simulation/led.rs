@@ -18,6 +18,7 @@ const MOST_MOVES: usize = 4;
 const STRAYS: f64 = 1e-4;
 /// What energy the trapezoidal rule may leave to doubt in a step, in parts of what there is; how often a step is halved for it.
 const ROUGH: f64 = 1e-4;
+const MENDED: f64 = 0.03;
 const MOST_HALVINGS: u32 = 4;
 
 impl Simulation {
@@ -77,7 +78,8 @@ impl Simulation {
         let there = self.model.power(&self.scratch.at(), &self.scratch.lambda);
         let rough = Power::between(ends[0], ends[1], 0.5);
         let off = (to - from) * (there.supplied - there.dissipated - rough.supplied + rough.dissipated).abs();
-        if halvings == 0 || off <= ROUGH * self.audit.scale {
+        // what Simpson's rule leaves is far less than what it mends
+        if halvings == 0 || off <= MENDED * self.audit.scale {
             return Some(Power::between(rough, there, 2.0 / 3.0));
         }
         let first = self.mean_power([from, middle], [ends[0], there], halvings - 1)?;
