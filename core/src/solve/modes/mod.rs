@@ -26,6 +26,8 @@ use std::ops::ControlFlow;
 
 /// A stiffness of less than so many times its own rounding is none.
 const ZERO: f64 = 64.0;
+/// A growth in parts of the fastest rate that is none.
+const CREEPS: f64 = 1e-6;
 
 /// Refuses a time at which a constraint moves otherwise than the frame, before an equilibrium is looked for in vain.
 ///
@@ -135,6 +137,11 @@ pub fn modes(
     }
     let all = std::mem::take(&mut found.modes);
     let mut modes: Vec<Mode> = all.into_iter().map(|raw| finish(model, &pencil, raw)).collect();
+    // what creeps away a million times slower than others move is rounding of what is free
+    let fastest = modes.iter().map(|m| m.growth.hypot(m.omega)).fold(0.0, f64::max);
+    for mode in modes.iter_mut().filter(|m| m.omega == 0.0 && m.growth > 0.0 && m.growth <= CREEPS * fastest) {
+        (mode.growth, mode.rigid) = (0.0, true);
+    }
     // in the order found, but rigid ones first
     modes.sort_by_key(|m| !m.rigid);
     // no law of inertia counts what is damped or gyroscopic, but a disturbance finds what grows
