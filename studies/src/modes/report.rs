@@ -118,7 +118,9 @@ type Row = fn(&Model, usize, &Mode) -> [String; 6];
 
 /// The row of a mode of vibration.
 fn vibrating(model: &Model, k: usize, m: &Mode) -> [String; 6] {
-    let ratio = if m.rigid { String::new() } else { format!("{:.4}", m.damping_ratio()) };
+    // a ratio that rounds to nothing has no sign
+    let four = (1e4 * m.damping_ratio()).round() / 1e4 + 0.0;
+    let ratio = if m.rigid { String::new() } else { format!("{four:.4}") };
     [
         (k + 1).to_string(),
         Short(m.frequency()).to_string(),
