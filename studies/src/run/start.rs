@@ -113,14 +113,19 @@ impl Started {
                 ));
             }
         }
-        all.extend(match self {
-            Started::Dynamics(s, ..) => scene.doubts(&s.model, &s.state.at()),
-            Started::Statics(done) | Started::Process(_, done) => scene.doubts(&done.model, &done.state.at()),
-        });
+        all.extend(self.doubts(scene));
         if !scene.run.audit && scene.records.iter().any(|r| r.typetag_name() == "energy") {
             all.push("energy is recorded but not followed: set `audit = true` in [run]".into());
         }
         all
+    }
+
+    /// What is doubtful of the scene as it is now.
+    fn doubts(&self, scene: &Scene) -> Vec<String> {
+        match self {
+            Started::Dynamics(s, ..) => scene.doubts(&s.model, &s.state.at()),
+            Started::Statics(done) | Started::Process(_, done) => scene.doubts(&done.model, &done.state.at()),
+        }
     }
 
     /// What there is to be seen.
@@ -249,6 +254,13 @@ impl Started {
         }
         for text in self.remarks().into_iter().chain(recorder.remarks()) {
             recorder.warnings.say(&text);
+        }
+        // what has sunk below the bed since, once for each part
+        let part = |text: &str| text.split("` ").next().unwrap_or_default().to_string();
+        for text in self.doubts(scene) {
+            if !recorder.warnings.all.iter().any(|old| part(old) == part(&text)) {
+                recorder.warnings.say(&text);
+            }
         }
         match (end, recorder.stop.take()) {
             (_, Some(ending)) => ending,

@@ -272,4 +272,24 @@ fn seas_beyond_a_table_and_parts_below_the_bed_are_told() {
     assert!(told("[0.4, 0.45]", 40.0, beyond) && !told("[0.3, 4.5]", 40.0, "has responses to waves"));
     let below = "`ship` reaches down to 12.000 m under the surface, and the water is 10 m deep";
     assert!(told("[0.3, 4.5]", 10.0, below) && !told("[0.3, 4.5]", 40.0, "reaches down"));
+    // also of what sinks there later
+    let sinks = r#"
+        run = { duration = 4, output = 1 }
+        [water]
+        level = 0
+        waves = { regular = { height = 1, period = 6 }, depth = 30 }
+        [[elements]]
+        type = "rigid_body"
+        name = "block"
+        position = [0, 0, -10]
+        mass = 1000
+        inertia = [10, 10, 10]
+        hull = { from = [-1, 0, 0], to = [1, 0, 0], diameter = 0.1 }
+        [[forces]]
+        type = "gravity"
+        [[forces]]
+        type = "drag"
+        "#;
+    let said = run(sinks).warnings.into_iter().filter(|w| w.contains("`block` reaches down")).count();
+    assert_eq!(said, 1);
 }

@@ -139,7 +139,8 @@ pub fn modes(
     let mut modes: Vec<Mode> = all.into_iter().map(|raw| finish(model, &pencil, raw)).collect();
     // what creeps away a million times slower than others move is rounding of what is free
     let fastest = modes.iter().map(|m| m.growth.hypot(m.omega)).fold(0.0, f64::max);
-    for mode in modes.iter_mut().filter(|m| m.omega == 0.0 && m.growth > 0.0 && m.growth <= CREEPS * fastest) {
+    for mode in modes.iter_mut().filter(|m| m.omega == 0.0 && m.growth > 0.0 && m.growth <= CREEPS * fastest)
+    {
         (mode.growth, mode.rigid) = (0.0, true);
     }
     // in the order found, but rigid ones first
