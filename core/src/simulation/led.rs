@@ -16,8 +16,9 @@ use crate::solve::linear::SolveError;
 const MOST_MOVES: usize = 4;
 /// What velocities are off the constraints by that the balance of energy takes as it is, in parts of the fastest.
 const STRAYS: f64 = 1e-4;
-/// What energy the trapezoidal rule may leave to doubt in a step, in parts of what there is; how often a step is halved for it.
+/// What energy the trapezoidal rule may leave to doubt in a step, in parts of what there is …
 const ROUGH: f64 = 1e-4;
+/// … what Simpson's rule may change of it to be taken at its word, and how often a step is halved for that.
 const MENDED: f64 = 0.03;
 const MOST_HALVINGS: u32 = 4;
 
@@ -44,30 +45,35 @@ impl Simulation {
     /// What motions bring in over the last step, or its beginning, by powers inside of it, less what the trapezoidal rule makes of those at its ends, where
     /// that is rough: no error of position makes the steps of what is led shorter.
     pub(super) fn brought_in(&mut self, span: [f64; 2], ends: [Power; 2]) -> Power {
+        if !self.model.is_led() || !self.is_of_bodies() {
+            return Power::zero();
+        }
         let rough = Power::between(ends[0], ends[1], 0.5);
         let h = span[1] - span[0];
         let net = |p: &Power| p.supplied + p.carried - p.dissipated;
-        let changes = h * (net(&ends[1]) - net(&ends[0])).abs() > ROUGH * self.audit.scale;
-        match changes && self.model.is_led() && self.is_of_bodies() {
-            true => self.mean_power(span, ends, MOST_HALVINGS).map_or(Power::zero(), |mean| Power {
-                dissipated: h * (mean.dissipated - rough.dissipated),
-                supplied: h * (mean.supplied - rough.supplied),
-                carried: h * (mean.carried - rough.carried),
-            }),
-            false => Power::zero(),
+        if h * (net(&ends[1]) - net(&ends[0])).abs() <= ROUGH * self.audit.scale {
+            return Power::zero();
         }
+        self.mean_power(span, ends, MOST_HALVINGS).map_or(Power::zero(), |mean| Power {
+            dissipated: h * (mean.dissipated - rough.dissipated),
+            supplied: h * (mean.supplied - rough.supplied),
+            carried: h * (mean.carried - rough.carried),
+        })
     }
 
-    /// The power of motions in the scratch state inside the last step, if they lead bodies; the state is left as it is.
-    pub(super) fn power_inside(&mut self) -> Option<Power> {
+    /// The power of motions in the scratch state, which lies inside the last step, and what they brought in until there beside the
+    /// trapezoidal rule; nothing unless they lead bodies. The state is left as it is.
+    pub(super) fn led_inside(&mut self, span: [f64; 2], begin: Power) -> Option<(Power, Power)> {
         if !self.model.is_led() || !self.is_of_bodies() {
             return None;
         }
         let kept = self.scratch.clone();
-        let found = self.lead_with_forces().is_ok();
-        let power = self.model.power(&self.scratch.at(), &self.scratch.lambda);
+        let found = self.lead_with_forces().is_ok().then(|| {
+            let then = self.model.power(&self.scratch.at(), &self.scratch.lambda);
+            (then, self.brought_in(span, [begin, then]))
+        });
         self.scratch = kept;
-        found.then_some(power)
+        found
     }
 
     /// The mean power over a part of the last step by Simpson's rule, on halves where that isn't enough.

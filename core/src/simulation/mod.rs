@@ -475,13 +475,11 @@ impl Simulation {
             let (before, power) = self.accounted;
             let energy = self.model.energy(&self.scratch.at());
             let straight = Power::between(power, self.power, (now - begin) / (end - begin));
-            let then = self.power_inside().unwrap_or(straight);
+            let led = self.led_inside([begin, now], power);
+            let (then, more) = led.unwrap_or((straight, Power::zero()));
             self.shown = before;
             self.shown.add(now - begin, energy, power, then);
-            let kept = self.scratch.clone();
-            let more = self.brought_in([begin, now], [power, then]);
             self.shown.correct(more);
-            self.scratch = kept;
         }
     }
 
