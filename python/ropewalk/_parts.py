@@ -3030,7 +3030,7 @@ class Parts:
             direction: Direction that the waves travel towards, the mean if they spread: from x to y [rad]. Default
                 0.0.
             spreading: How directions spread about the mean. Default: all waves have the same direction.
-            count: Number of regular waves that make a spectrum. Default 200.
+            count: Number of regular waves that make a spectrum, 10000 at most. Default 200.
             sampling: How their frequencies are chosen. Default equal-energy.
             seed: Seed of their random phases: the same seed gives the same sea on every machine. Default 1.
             depth: Depth of the water [m]. Default: deep water.

@@ -52,7 +52,7 @@ def test_a_prescribed_speed_carries_what_hangs_on_it_along():
     l = rw.linearise(scene, at="start")
     r = l.reduced()
     assert r.Z.shape == (6, 3) and l.G.shape == (3, 6)
-    x = {name: l.unknowns.index(f"`{name}` , position x") for name in ("cart", "ball")}
+    x = {name: l.unknowns.index(f"`{name}`, position x") for name in ("cart", "ball")}
     # the cart goes where its speed leads, and is no unknown any more
     assert r.V[x["cart"], 0] == pytest.approx(1) and np.abs(r.Z[x["cart"]]).max() < 1e-12
     # m x'' + c x' + k x = c u + k ∫u: what the ball does at any complex frequency
