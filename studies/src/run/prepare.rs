@@ -60,11 +60,11 @@ impl NewFolder {
             if let Some((_, name)) = known.iter().find(|(old, _)| old == path) {
                 return name.clone();
             }
-            // a pipe was read already
+            // a pipe was read already; names differ by more than case, for file systems that don't tell it
             let from = Path::new(path);
             let Some(own) = from.file_name().filter(|_| from.is_file()) else { return path.into() };
             let own = own.to_string_lossy();
-            let free = |name: &String| known.iter().all(|(_, other)| other != name);
+            let free = |name: &String| known.iter().all(|(_, other)| !other.eq_ignore_ascii_case(name));
             let numbered = (2..).map(|k| format!("inputs/{k}-{own}"));
             let name =
                 std::iter::once(format!("inputs/{own}")).chain(numbered).find(free).unwrap_or_default();

@@ -256,7 +256,7 @@ impl Started {
             recorder.warnings.say(&text);
         }
         // what has sunk below the bed since, once for each part
-        let part = |text: &str| text.split("` ").next().unwrap_or_default().to_string();
+        let part = |text: &str| text.split(" reaches down").next().unwrap_or_default().to_string();
         for text in self.doubts(scene) {
             if !recorder.warnings.all.iter().any(|old| part(old) == part(&text)) {
                 recorder.warnings.say(&text);

@@ -32,6 +32,7 @@ const STARTS: usize = 4;
 /// How far a shift goes aside from where the matrix is singular, and how often.
 const ASIDE: f64 = 1.37;
 const MOST_ASIDE: usize = 4;
+/// How near to an eigenvalue a shift is beside it, in parts of the shift.
 const BESIDE: f64 = 0.1;
 
 /// A shift `m` [1/s²] near the lowest eigenvalue that isn't zero: above zero, so that free parts don't make the matrix

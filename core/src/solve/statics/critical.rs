@@ -75,8 +75,15 @@ impl Statics<'_> {
     }
 
     /// Locates where eigenvalues cross between two equilibria under loads without potential, by bisection of the load.
+    /// What is known of `to` stays as it is.
     pub(super) fn locate_by_load(&mut self, from: &State, to: &State, found: &mut Found) -> Crossing {
         let kept = (self.unstable, self.neutral.clone(), self.doubt.clone(), self.judged.clone());
+        let crossing = self.bisect_load(from, to, found);
+        (self.unstable, self.neutral, self.doubt, self.judged) = kept;
+        crossing
+    }
+
+    fn bisect_load(&mut self, from: &State, to: &State, found: &mut Found) -> Crossing {
         let (mut low, mut high, mut judged) = (from.clone(), to.clone(), self.judged.clone());
         let diverges = self.unstable > 0;
         let swings = |j: &Judgement| j.flutter > 0.0 && j.unstable == 0;
@@ -100,16 +107,14 @@ impl Statics<'_> {
         }
         let (whole, left) = (self.distance(&from.q, &to.q), self.distance(&low.q, &high.q));
         if left > LEAP * whole && left > self.options.tolerance {
-            (self.unstable, self.neutral, self.doubt, self.judged) = kept;
             return Crossing::Leapt;
         }
         if let Some(judged) = below.filter(|_| diverges) {
             // a pair that swings ever wider becomes two that go one way: nothing branches off there, and it was lost before
             if !self.swung {
                 (self.unstable, self.judged) = (0, judged);
-                let _ = self.locate_by_load(from, &low, found);
+                let _ = self.bisect_load(from, &low, found);
             }
-            (self.unstable, self.neutral, self.doubt, self.judged) = kept;
             return Crossing::Swung;
         }
         let (kind, shape) = match judged.way_out {
@@ -126,7 +131,6 @@ impl Statics<'_> {
             shape,
             state,
         });
-        (self.unstable, self.neutral, self.doubt, self.judged) = kept;
         Crossing::Here
     }
 
