@@ -7,6 +7,7 @@ mod mechanisms;
 #[path = "../common/program.rs"]
 mod program;
 
+mod buckling;
 mod flow;
 mod modes;
 mod paths;

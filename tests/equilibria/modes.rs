@@ -22,7 +22,7 @@ fn find(scene: &Scene, count: usize) -> Vec<Mode> {
 }
 
 #[track_caller]
-fn close(what: &str, found: f64, exact: f64, tolerance: f64) {
+pub(crate) fn close(what: &str, found: f64, exact: f64, tolerance: f64) {
     let off = (found / exact - 1.0).abs();
     println!("{what}: {found:.9}, exact {exact:.9}, off by {off:.1e}");
     assert!(off <= tolerance, "{what}: {found} instead of {exact}, off by {off:e}");
@@ -440,103 +440,9 @@ fn program_shows_the_modes_and_leaves_tables_and_pictures() {
         .refused(&["`--at` must be between 0 and 1 s"]);
 }
 
-/// A column of `EI = 1 N m²` and 1 m under a load, straight.
-fn column(load: f64, foot: bool, head: [bool; 2]) -> Scene {
-    let mut scene = Scene::new();
-    scene
-        .element(CableSpec::straight("column", [0.0; 3], [0.0, 0.0, 1.0], 32, Section::new(1.0, 1e8, 1.0)))
-        .constraint(SphericalSpec::pin("foot", "column.start"));
-    if foot {
-        scene.constraint(DirectionSpec::new("foot-clamp", "column.start"));
-    }
-    let [guided, clamped] = head;
-    if guided {
-        scene.constraint(PointOnLineSpec {
-            name: "head".into(),
-            marker: "column.end".into(),
-            to: None,
-            axis: [0.0, 0.0, 1.0],
-        });
-    }
-    if clamped {
-        scene.constraint(DirectionSpec::new("head-clamp", "column.end"));
-    }
-    if load != 0.0 {
-        scene.force(PointForceSpec::new("column.end", [0.0, 0.0, -load], TimeFunction::default()));
-    }
-    scene.run.analysis = Analysis::Statics;
-    scene.statics.stable = false;
-    scene
-}
-
 #[track_caller]
-fn modal(scene: &Scene, count: usize) -> Modal {
+pub(crate) fn modal(scene: &Scene, count: usize) -> Modal {
     modes(scene, &ModesOptions { count, ..ModesOptions::default() }).unwrap_or_else(|e| panic!("{e}"))
-}
-
-#[test]
-fn columns_buckle_at_the_critical_factor_of_their_loads() {
-    let cases = [
-        ("clamped, free", true, [false, false], 0.25 * PI * PI),
-        ("pinned", false, [true, false], PI * PI),
-        ("clamped, pinned", true, [true, false], 20.190_728_556_426_63),
-        ("clamped", true, [true, true], 4.0 * PI * PI),
-    ];
-    for (name, foot, head, exact) in cases {
-        for share in [1e-3, 0.4, 0.95] {
-            let found = modal(&column(share * exact, foot, head), 4);
-            assert!(!found.unstable && found.warnings.is_empty(), "{:?}", found.warnings);
-            let critical = found.critical.expect("a load");
-            assert_eq!(critical.loads, ["force at `column.end`"]);
-            close(name, critical.factor.expect("it buckles"), 1.0 / share, 1e-4);
-            let shape = critical.shape.expect("a shape");
-            assert!(shape.directions[0] + shape.directions[1] > 0.999, "{:?}", shape.directions);
-        }
-        // beyond it nothing vibrates: the ways in which it falls, and from which load on it does
-        let found = modal(&column(1.5 * exact, foot, head), 6);
-        assert!(found.unstable && found.modes.len() == 2 && found.modes.iter().all(Mode::is_unstable));
-        assert!(found.warnings[0].contains("grows in 2 modes"), "{:?}", found.warnings);
-        close(name, found.critical.and_then(|c| c.factor).expect("lost before"), 1.0 / 1.5, 1e-4);
-    }
-    // Greenhill: a column under its own weight
-    let mut heavy = column(0.0, true, [false, false]);
-    heavy.set_gravity([0.0, 0.0, -2.0]).force(GravitySpec::default());
-    let critical = modal(&heavy, 4).critical.expect("a load");
-    close("Greenhill", critical.factor.expect("it buckles"), 7.837_347_438_943_38 / 2.0, 1e-4);
-    // hung up, it never buckles
-    let mut hung = column(0.0, true, [false, false]);
-    hung.set_gravity([0.0, 0.0, 2.0]).force(GravitySpec::default());
-    assert_eq!(modal(&hung, 4).critical.expect("a load").factor, None);
-    assert!(modal(&column(0.0, true, [false, false]), 4).critical.is_none(), "no load, no factor");
-}
-
-/// A beam that a force bends has no critical load: its stiffness along the cable turns with it, which linear buckling took for one.
-#[test]
-fn what_is_bent_has_no_critical_factor_for_that() {
-    for load in [0.2, 1.0, 3.0] {
-        let mut scene = column(0.0, true, [false, false]);
-        scene.force(PointForceSpec::new("column.end", [load, 0.0, 0.0], TimeFunction::default()));
-        let found = modal(&scene, 4);
-        assert_eq!(found.critical.expect("a load").factor, None, "{load}");
-    }
-}
-
-#[test]
-fn follower_forces_flutter_and_never_buckle() {
-    // Beck's column flutters at 20.051 without damping
-    for (load, flutters) in [(10.0, false), (19.5, false), (20.6, true)] {
-        let mut scene = column(0.0, true, [false, false]);
-        scene.force(PointForceSpec {
-            follower: Some((-load).into()),
-            ..PointForceSpec::new("column.end", [0.0; 3], TimeFunction::default())
-        });
-        let found = modal(&scene, 8);
-        assert_eq!(found.unstable, flutters, "{load}: {:?}", found.warnings);
-        assert_eq!(found.critical.expect("a load").factor, None, "{load}");
-        if flutters {
-            assert!(found.modes.iter().all(|m| m.is_unstable() && m.omega > 1.0));
-        }
-    }
 }
 
 /// A string that runs at a speed through two eyelets: `ω = n π (c² - V²)/(c L)`.

@@ -147,14 +147,22 @@ fn growing(model: &Model, k: usize, m: &Mode) -> [String; 6] {
 /// The critical factor in a sentence.
 fn buckling(model: &Model, critical: &Critical) -> String {
     let loads = critical.loads.join(", ");
-    match (&critical.factor, &critical.shape) {
-        (Some(factor), Some(shape)) => format!(
-            "Critical factor of all loads together ({loads}): {}, by linear buckling; moves {}",
+    let loads = format!("all loads together ({loads})");
+    match (&critical.factor, &critical.shape, critical.safe) {
+        (Some(factor), Some(shape), followed) => format!(
+            "Critical factor of {loads}: {}{}; moves {}",
             Short(*factor),
+            if followed.is_some() { "" } else { ", by linear buckling" },
             where_it_moves(model, shape)
         ),
+        (.., Some(safe)) if safe >= 1.0 => {
+            format!("No critical factor of {loads}: nothing gives way up to {}", Short(safe))
+        }
+        (.., Some(safe)) => {
+            format!("No critical factor of {loads}: it falls over at {} of them as well", Short(safe))
+        }
         _ => format!(
-            "Linear buckling finds no critical factor of all loads together ({loads}); a path of equilibria under loads that grow, \
+            "Linear buckling finds no critical factor of {loads}; a path of equilibria under loads that grow, \
              `analysis = \"statics\"`, tells for sure"
         ),
     }

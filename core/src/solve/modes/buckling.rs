@@ -1,11 +1,13 @@
-//! Linear buckling: the factor by which all loads may grow until the equilibrium tips over.
+//! How far all loads may grow until the equilibrium tips over: by following it, where directions that fall over can be
+//! counted, and else by linear buckling.
 //!
 //! With the loads at `p` times what they are, `p` near 1, the equilibrium moves by `(p - 1) x'` and its stiffness is
 //! `K + (p - 1) K'`; the critical factor makes that singular. Both derivatives are taken at the equilibrium itself: `x'`
 //! by one solution, `K'` along it by central differences. For a straight column that is Euler's problem; where shape
 //! or forces don't change in proportion to the loads it is an estimate, the better the closer the factor is to 1.
 
-use super::krylov::{Arnoldi, Operator, Ritz, dot};
+use super::krylov::{Arnoldi, Operator, Ritz};
+use super::loading::{Followed, Loading, size, stiffness};
 use super::outcome::{Critical, Mode, ModesError, Raw, finish};
 use super::pencil::Pencil;
 use crate::model::Model;
@@ -23,15 +25,8 @@ const MOST_TURNS: usize = 200;
 /// How near to a critical factor the stiffness is looked at, by the loads that are added until then; stages on the way there.
 const NEAR: f64 = 0.9;
 const STAGES: usize = 4;
-/// How far behind it the directions are counted again.
-const BEHIND: f64 = 1.1;
 /// What is left of it there at most: a tenth, if it falls with the loads.
 const GONE: f64 = 0.5;
-/// Corrections by Newton's method on the way, and the size of the last one.
-const MOST_CORRECTIONS: usize = 15;
-const CLOSED: f64 = 1e-7;
-/// Inverse iterations for a shape.
-const ITERATIONS: usize = 3;
 
 /// `-K⁻¹ K'`, whose eigenvalues are `1/(p - 1)`.
 struct Growth<'a> {
@@ -69,7 +64,7 @@ pub(super) fn critical(
     pencil: &mut Pencil,
     modes: &[Mode],
 ) -> Result<Option<Critical>, ModesError> {
-    let (force, stiffness) = statics.loads(state);
+    let (force, own) = statics.loads(state);
     let loads: Vec<String> = {
         let all = model.terms().iter().filter(|t| t.is_load());
         all.filter(|t| model.share_of(t.as_ref(), &state.at()).iter().any(|r| *r != 0.0))
@@ -84,22 +79,13 @@ pub(super) fn critical(
     // what moves freely is held by hardly anything, so that the matrix isn't singular for its sake
     let free = modes.iter().any(|m| m.rigid);
     let shift = if free { 1e-9 * softest } else { 0.0 };
-    pencil.factor(0.0, shift).map_err(ModesError::Solver)?;
-    let d = pencil.answer(&force).map_err(ModesError::Solver)?;
-    let by_load = stiffness_by_load(statics, model, state, &d, stiffness);
-    if by_load.iter().any(|x| !x.is_finite()) {
-        return Ok(None);
-    }
-    let stable = !modes.iter().any(Mode::is_unstable);
-    let mut growth = Growth { p: pencil, by_load, shift };
-    let found = search(&mut growth, stable)?;
-    let Growth { p: pencil, .. } = growth;
-    let found = match found {
-        Some((factor, x)) => {
-            let path = Path { model, d: &d, shift };
-            path.gives_way(statics, state, factor, &x)?.then_some((factor, x))
+    let mut loading = Loading { statics, model, shift };
+    let (found, safe) = match loading.follow(state)? {
+        Some(Followed { lost, safe }) => (lost, Some(safe)),
+        None => {
+            let stable = !modes.iter().any(Mode::is_unstable);
+            (linear(&mut loading, state, pencil, (&force, own), stable)?, None)
         }
-        None => None,
     };
     let (factor, shape) = match found {
         None => (None, None),
@@ -108,124 +94,53 @@ pub(super) fn critical(
             (Some(factor), Some(finish(model, pencil, raw)))
         }
     };
-    Ok(Some(Critical { loads, factor, shape }))
+    Ok(Some(Critical { loads, factor, shape, safe }))
 }
 
-/// The path of equilibria along the loads.
-struct Path<'a> {
-    model: &'a Model,
-    /// Its direction, by the linear equations.
-    d: &'a [f64],
-    shift: f64,
-}
-
-impl Path<'_> {
-    /// Whether the stiffness against a shape is all but gone shortly before the loads reach a factor. That of the linear equations may
-    /// be none: where what is stiff turns, as along a bent cable, `K + (p - 1) K'` is singular after a turn by the root of how much
-    /// stiffer it is.
-    fn gives_way(
-        &self,
-        statics: &mut Statics<'_>,
-        state: &State,
-        factor: f64,
-        shape: &[f64],
-    ) -> Result<bool, ModesError> {
-        let (mut there, mut load) = (state.clone(), 0.0);
-        let Some(before) = self.stiffness(statics, &there, load, shape)? else { return Ok(false) };
-        for k in 1..=STAGES {
-            let to = NEAR * (factor - 1.0) * k as f64 / STAGES as f64;
-            self.advance(&mut there, to - load, self.d);
-            load = to;
-            // it may be lost before
-            if !self.closes(statics, &mut there, load)? {
-                return Ok(true);
-            }
-        }
-        if let Some(count) = self.pencil(statics, &there, load)?.below() {
-            // by the law of inertia: a direction is lost or won there
-            let to = BEHIND * (factor - 1.0);
-            self.advance(&mut there, to - load, self.d);
-            let closes = self.closes(statics, &mut there, to)?;
-            return Ok(!closes || self.pencil(statics, &there, to)?.below() != Some(count));
-        }
-        let after = self.stiffness(statics, &there, load, shape)?;
-        Ok(after.is_some_and(|after| after.abs() < GONE * before.abs()))
+/// The factor and the shape by linear buckling, for matrices in whose pivots nothing is counted; the loads as residual and
+/// stiffness.
+fn linear(
+    loading: &mut Loading<'_, '_>,
+    state: &State,
+    pencil: &mut Pencil,
+    (force, own): (&[f64], Vec<f64>),
+    stable: bool,
+) -> Result<Option<(f64, Vec<f64>)>, ModesError> {
+    pencil.factor(0.0, loading.shift).map_err(ModesError::Solver)?;
+    let d = pencil.answer(force).map_err(ModesError::Solver)?;
+    let by_load = stiffness_by_load(loading.statics, loading.model, state, &d, own);
+    if by_load.iter().any(|x| !x.is_finite()) {
+        return Ok(None);
     }
-
-    /// The equations under loads that are by this part of them larger.
-    fn pencil(&self, statics: &mut Statics<'_>, state: &State, more: f64) -> Result<Pencil, ModesError> {
-        let (force, own) = statics.loads(state);
-        let mut linear = statics.linearise(state);
-        for values in [&mut linear.stiffness, &mut linear.braced] {
-            values.iter_mut().zip(&own).for_each(|(k, own)| *k += more * own);
-        }
-        linear.braced_residual.iter_mut().zip(&force).for_each(|(r, force)| *r += more * force);
-        let mut pencil = Pencil::new(self.model, &state.internal, linear)?;
-        pencil.factor(0.0, self.shift).map_err(ModesError::Solver)?;
-        Ok(pencil)
-    }
-
-    fn advance(&self, state: &mut State, part: f64, d: &[f64]) {
-        let (moves, multipliers) = d.split_at(self.model.velocities());
-        let (moves, before): (Vec<f64>, _) = (moves.iter().map(|x| part * x).collect(), state.q.clone());
-        self.model.retract(&before, &moves, &mut state.q);
-        state.lambda.iter_mut().zip(multipliers).for_each(|(l, m)| *l += part * m);
-    }
-
-    /// Closes in on the equilibrium by Newton's method; whether it does.
-    fn closes(&self, statics: &mut Statics<'_>, state: &mut State, more: f64) -> Result<bool, ModesError> {
-        let model = self.model;
-        for _ in 0..MOST_CORRECTIONS {
-            let mut pencil = self.pencil(statics, state, more)?;
-            let d = pencil.correction().map_err(ModesError::Solver)?;
-            let size = size(model, &d[..model.velocities()]);
-            if !size.is_finite() {
-                return Ok(false);
-            }
-            self.advance(state, 1.0, &d);
-            if size <= CLOSED {
-                return Ok(true);
-            }
-        }
-        Ok(false)
-    }
-
-    /// `xᵀKx / xᵀMx` of the shape that a few inverse iterations make of this one.
-    fn stiffness(
-        &self,
-        statics: &mut Statics<'_>,
-        state: &State,
-        more: f64,
-        shape: &[f64],
-    ) -> Result<Option<f64>, ModesError> {
-        let mut pencil = self.pencil(statics, state, more)?;
-        let (mut x, mut y) = (shape.to_vec(), vec![0.0; shape.len()]);
-        for _ in 0..ITERATIONS {
-            pencil.mass(&x, &mut y);
-            pencil.solve(&mut y).map_err(ModesError::Solver)?;
-            let largest = y.iter().fold(0.0, |m: f64, y| m.max(y.abs()));
-            y.iter_mut().for_each(|y| *y /= largest);
-            std::mem::swap(&mut x, &mut y);
-        }
-        pencil.mass(&x, &mut y);
-        let mass = dot(&x, &y);
-        pencil.stiffness(&x, &mut y);
-        let found = dot(&x, &y) / mass;
-        Ok(found.is_finite().then_some(found))
+    let found = search(&mut Growth { p: pencil, by_load, shift: loading.shift }, stable)?;
+    match found {
+        Some(found) if gives_way(loading, state, &d, &found)? => Ok(Some(found)),
+        _ => Ok(None),
     }
 }
 
-/// Size of an increment, in lengths of the model and radians.
-fn size(model: &Model, moves: &[f64]) -> f64 {
-    let mut size = 0.0_f64;
-    for n in model.nodes() {
-        for (k, x) in moves[n.dofs()].iter().enumerate() {
-            let x = if k < 3 && n.kind.has_position() { x.abs() / model.length() } else { x.abs() };
-            // a NaN stays
-            size = if x <= size { size } else { x };
+/// Whether the stiffness against a shape is all but gone shortly before the loads reach a factor. That of the linear equations may
+/// be none: where what is stiff turns, as along a bent cable, `K + (p - 1) K'` is singular after a turn by the root of how much
+/// stiffer it is.
+fn gives_way(
+    loading: &mut Loading<'_, '_>,
+    state: &State,
+    d: &[f64],
+    (factor, shape): &(f64, Vec<f64>),
+) -> Result<bool, ModesError> {
+    let (mut there, mut at) = (state.clone(), 1.0);
+    let before = stiffness(&mut loading.pencil(state, at)?, &mut shape.clone())?;
+    for k in 1..=STAGES {
+        let to = 1.0 + NEAR * (factor - 1.0) * k as f64 / STAGES as f64;
+        loading.advance(&mut there, to - at, d);
+        at = to;
+        // it may be lost before
+        if loading.close(&mut there, at, f64::INFINITY)?.is_none() {
+            return Ok(true);
         }
     }
-    size
+    let after = stiffness(&mut loading.pencil(&there, at)?, &mut shape.clone())?;
+    Ok(after.abs() < GONE * before.abs())
 }
 
 /// `K'`: its change along the path of equilibria, whose direction is `d`, and the loads' own part.

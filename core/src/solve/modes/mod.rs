@@ -9,6 +9,7 @@ mod align;
 mod buckling;
 mod dense;
 mod krylov;
+mod loading;
 mod outcome;
 mod pencil;
 mod quadratic;

@@ -149,6 +149,9 @@ pub struct Critical {
     pub factor: Option<f64>,
     /// The direction in which it tips over, as a mode without a rate.
     pub shape: Option<Mode>,
+    /// The factor up to which the path of equilibria is known; `None` where it wasn't followed, as falling directions can't
+    /// be counted in matrices that aren't symmetric: the factor is that of linear buckling then.
+    pub safe: Option<f64>,
 }
 
 /// Along which of [`Mode::directions`] a component of a node moves.

@@ -135,8 +135,9 @@ impl Statics<'_> {
         }
     }
 
-    /// Largest diagonal entries of the assembled stiffness, of positions and of what has no length; where there are none before
-    /// constraints have their forces, that of the load over its reference length.
+    /// What outweighs the assembled stiffness, of positions and of what has no length: twice its largest diagonal entry, as
+    /// one that is negative must not be cancelled; where there are none before constraints have their forces, that of the
+    /// load over its reference length.
     pub(super) fn stiffest(&self) -> [f64; 2] {
         let s = &self.structure;
         let mut largest = [0.0_f64; 2];
@@ -154,7 +155,7 @@ impl Statics<'_> {
         if !(largest[1] > 0.0) {
             largest[1] = largest[0] * length.powi(2);
         }
-        largest
+        largest.map(|x| 2.0 * x)
     }
 
     /// Velocities and accelerations of the frame at a configuration.
