@@ -26,6 +26,9 @@ pub(super) const SHORTEST: f64 = 1e-6;
 /// for: between two places that far apart the depth changes by a thousandth of it.
 pub(crate) const DETAIL: f64 = 0.125;
 
+/// What depths are known to, in parts of the coordinates.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// A place that was looked at: depth, and its derivative by `ξ`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Look {
@@ -184,7 +187,9 @@ pub(crate) trait Depth {
     fn judge(&self, a: &Look, b: &Look) -> Piece {
         let c = self.rise(a, b);
         let (most, least) = self.bounds_with(c, a, b);
-        if most <= 0.0 {
+        // what lies along a plane is no deeper than rounding says
+        let size = a.x.iter().chain(&b.x).fold(0.0, |m: f64, x| m.max(x.abs()));
+        if most <= ROUNDING * size {
             return Piece::Free;
         }
         if least >= 0.0 {
@@ -372,3 +377,41 @@ const EIGHT: [(f64, f64); 8] = [
     (0.898_333_238_706_813_5, 0.111_190_517_226_687_23),
     (0.980_144_928_248_768_2, 0.050_614_268_145_188_09),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    /// A search that counts its looks.
+    struct Counted<'a>(Search<'a>, Cell<usize>);
+
+    impl Depth for Counted<'_> {
+        fn look(&self, xi: f64) -> Option<Look> {
+            self.1.set(self.1.get() + 1);
+            self.0.look(xi)
+        }
+        fn speed(&self) -> f64 {
+            self.0.speed()
+        }
+        fn rise(&self, a: &Look, b: &Look) -> f64 {
+            self.0.rise(a, b)
+        }
+    }
+
+    /// A line that lies along a bed touches nowhere or everywhere but for rounding, which isn't searched through.
+    #[test]
+    fn what_lies_along_a_plane_takes_few_looks() {
+        for k in 1..=40 {
+            let (x, radius) = (25.3 * f64::from(k), 0.0137 * f64::from(k));
+            let along = [61.7, 0.0, 0.0];
+            let curve = Cubic([[x, 3.0, radius], along, [x + 61.7, 3.0, radius], along]);
+            let mut search = Search::new(&Shape::Plane, &curve, radius);
+            search.measure();
+            let (counted, mut found) = (Counted(search, Cell::new(0)), Vec::new());
+            counted.find_between([0.0, 1.0], &mut Vec::new(), &mut found);
+            let looks = counted.1.get();
+            assert!(looks < 10, "{radius}: {looks} looks");
+        }
+    }
+}
