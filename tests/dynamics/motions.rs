@@ -362,6 +362,42 @@ fn what_a_motion_leads_is_where_and_as_fast_as_it_says() {
     }
 }
 
+/// A drive that begins after a long rest, of which steps know nothing, brings in what the body has then.
+#[test]
+fn a_late_drive_brings_in_no_more_than_the_body_has() {
+    for solver in ["", "solver = { scheme = \"radau-iia-5\" }"] {
+        let text = format!(
+            r#"
+            run = {{ duration = "80 s", output = "10 ms" }}
+            {solver}
+            elements = [{{ type = "rigid_body", name = "b", position = [0, 0, 0], mass = 2, inertia = [1, 1, 1] }}]
+            motions = [
+                {{ type = "harmonic", name = "m", amplitude = [0.1, 0, 0], frequency = 2, start = 61.3, ramp = 0.05 }},
+            ]
+            records = [{{ type = "energy" }}]
+            [[constraints]]
+            type = "prismatic"
+            name = "rail"
+            marker = "b"
+            axis = [1, 0, 0]
+            [[constraints]]
+            type = "slide"
+            name = "drive"
+            marker = "b"
+            axis = [1, 0, 0]
+            motion = "m"
+            "#
+        );
+        let file = SceneFile::parse(&text, "late", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let h = simulate(file.scene()).unwrap_or_else(|e| panic!("{e}"));
+        let column = |name: &str| h.column(name).expect("energy");
+        let most = column("energy.kinetic").iter().fold(0.0, |m: f64, x| m.max(*x));
+        assert!((4.0..5.0).contains(&most), "{most}");
+        let imbalance = column("energy.imbalance");
+        assert!(imbalance.iter().all(|x| x.abs() < 1e-2 * most), "{solver}: {imbalance:?}");
+    }
+}
+
 /// A slider that a crank drives has the kinetic energy of its geometry, and the motor's work is what has become of it.
 #[test]
 fn a_driven_slider_crank_has_the_energy_of_its_geometry() {

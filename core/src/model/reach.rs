@@ -35,17 +35,20 @@ pub fn period(period: f64, h: f64) -> f64 {
 ///
 /// ```
 /// use ropewalk_core::reach;
-/// // a ramp from 10 s to 14 s: a step from 9 s goes an eighth of it beyond its start, one from 14 s as far as it likes
-/// assert_eq!(reach::rise(10.0, 14.0, 9.0, 60.0), 1.5);
+/// // a ramp from 10 s to 14 s: a step from 9 s ends where it begins, one from there or just before goes an eighth of it
+/// // beyond its start, and one from 14 s as far as it likes
+/// assert_eq!(reach::rise(10.0, 14.0, 9.0, 60.0), 1.0);
+/// assert_eq!(reach::rise(10.0, 14.0, 10.0, 60.0), 0.5);
 /// assert_eq!(reach::rise(10.0, 14.0, 14.0, 60.0), 60.0);
 /// ```
 pub fn rise(start: f64, end: f64, t: f64, h: f64) -> f64 {
     if t >= end { h } else { after(start, t, h, (end - start) / PER_RISE) }
 }
 
-/// The part of a step `h` from `t` where steps may go no further than `most` beyond a `start`.
+/// The part of a step `h` from `t` where steps end at a `start`, unless that is nearer than `most`, and may go no further than `most` beyond it.
 pub fn after(start: f64, t: f64, h: f64, most: f64) -> f64 {
-    h.min((start - t).max(0.0) + most)
+    let ahead = start - t;
+    h.min(if ahead > most { ahead } else { ahead.max(0.0) + most })
 }
 
 /// The part of a step `h` from `t` that doesn't leap over the knots of a table, whose values are joined by straight lines
@@ -181,8 +184,8 @@ mod tests {
     #[test]
     fn rises_and_periods_get_a_few_steps_each() {
         assert_eq!(
-            [0.0, 9.0, 10.0, 12.0, 14.0].map(|t| rise(10.0, 14.0, t, 60.0)),
-            [10.5, 1.5, 0.5, 0.5, 60.0]
+            [0.0, 9.0, 9.75, 10.0, 12.0, 14.0].map(|t| rise(10.0, 14.0, t, 60.0)),
+            [10.0, 1.0, 0.75, 0.5, 0.5, 60.0]
         );
         assert_eq!([period(24.0, 60.0), period(24.0, 1.0)], [2.0, 1.0]);
     }

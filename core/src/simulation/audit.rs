@@ -72,32 +72,28 @@ impl Audit {
     }
     /// Goes on over a step `h` by the trapezoidal rule.
     pub fn add(&mut self, h: f64, e: Energy, before: Power, after: Power) {
+        self.add_all(h, e, before, after, Power::zero());
+    }
+    /// The same with what the rule misses [J].
+    pub(crate) fn add_all(&mut self, h: f64, e: Energy, before: Power, after: Power, missed: Power) {
         self.kinetic = e.kinetic;
         self.potential = e.potential;
-        self.supplied += 0.5 * h * (before.supplied + after.supplied);
-        self.carried += 0.5 * h * (before.carried + after.carried);
-        self.dissipated += 0.5 * h * (before.dissipated + after.dissipated);
+        self.supplied += 0.5 * h * (before.supplied + after.supplied) + missed.supplied;
+        self.carried += 0.5 * h * (before.carried + after.carried) + missed.carried;
+        self.dissipated += 0.5 * h * (before.dissipated + after.dissipated) + missed.dissipated;
         let net = |p: &Power| p.supplied + p.carried - p.dissipated;
         let slope = if h > 0.0 { (net(&after) - net(&before)) / h } else { self.slope };
         self.unsure += UNSURE * h * h * (slope - self.slope).abs();
         self.slope = slope;
-        let all = [
-            e.kinetic,
-            (e.potential + e.kinetic - self.initial),
-            self.supplied,
-            self.dissipated,
-            self.carried,
-        ];
-        for x in all {
+        self.scale = self.scale_with(e);
+        for x in [self.supplied, self.dissipated, self.carried] {
             self.scale = self.scale.max(x.abs());
         }
         self.size = self.size.max(e.kinetic.abs() + e.potential.abs());
     }
-    /// Adds energies that the trapezoidal rule has missed [J].
-    pub(crate) fn correct(&mut self, more: Power) {
-        self.supplied += more.supplied;
-        self.carried += more.carried;
-        self.dissipated += more.dissipated;
+    /// The largest energy or work so far, and of these energies.
+    pub(crate) fn scale_with(&self, e: Energy) -> f64 {
+        self.scale.max(e.kinetic.abs()).max((e.potential + e.kinetic - self.initial).abs())
     }
     /// How much energy has appeared from nowhere, beyond what may be called an error of the integration. `noise` is energy
     /// that doesn't count [J].

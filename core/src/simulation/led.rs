@@ -8,7 +8,7 @@ use super::Simulation;
 use super::dense::Dense;
 use crate::model::constraint::{MOST_ROWS, RowKind};
 use crate::model::node::retract;
-use crate::model::term::Power;
+use crate::model::term::{Energy, Power};
 use crate::solve::integrator::{Which, agree, agree_in_velocity, move_velocities, way_back};
 use crate::solve::linear::SolveError;
 
@@ -42,42 +42,55 @@ impl Simulation {
         if self.is_of_bodies() { self.find_forces() } else { Ok(()) }
     }
 
-    /// What motions bring in over the last step, or its beginning, by powers inside of it, less what the trapezoidal rule makes of those at its ends, where
-    /// that is rough: no error of position makes the steps of what is led shorter.
-    pub(super) fn brought_in(&mut self, span: [f64; 2], ends: [Power; 2]) -> Power {
+    /// What the trapezoidal rule misses of the work of motions over the last step, or its beginning, with the energies at its
+    /// end: where powers at its ends differ, those inside of it are summed up, as no error of position makes the steps
+    /// of what is led shorter.
+    pub(super) fn missed(&mut self, span: [f64; 2], ends: [Power; 2], energy: Energy) -> Power {
         if !self.model.is_led() || !self.is_of_bodies() {
             return Power::zero();
         }
+        let scale = self.audit.scale_with(energy);
         let rough = Power::between(ends[0], ends[1], 0.5);
         let h = span[1] - span[0];
         let net = |p: &Power| p.supplied + p.carried - p.dissipated;
-        if h * (net(&ends[1]) - net(&ends[0])).abs() <= ROUGH * self.audit.scale {
+        if h * (net(&ends[1]) - net(&ends[0])).abs() <= ROUGH * scale {
             return Power::zero();
         }
-        self.mean_power(span, ends, MOST_HALVINGS).map_or(Power::zero(), |mean| Power {
+        self.mean_power(span, ends, MENDED * scale, MOST_HALVINGS).map_or(Power::zero(), |mean| Power {
             dissipated: h * (mean.dissipated - rough.dissipated),
             supplied: h * (mean.supplied - rough.supplied),
             carried: h * (mean.carried - rough.carried),
         })
     }
 
-    /// The power of motions in the scratch state, which lies inside the last step, and what they brought in until there beside the
-    /// trapezoidal rule; nothing unless they lead bodies. The state is left as it is.
-    pub(super) fn led_inside(&mut self, span: [f64; 2], begin: Power) -> Option<(Power, Power)> {
+    /// The power of motions in the scratch state, which lies inside the last step, and what the trapezoidal rule misses of their
+    /// work until there, where the energies are these; nothing unless they lead bodies. The state is left as it is.
+    pub(super) fn led_inside(
+        &mut self,
+        span: [f64; 2],
+        begin: Power,
+        energy: Energy,
+    ) -> Option<(Power, Power)> {
         if !self.model.is_led() || !self.is_of_bodies() {
             return None;
         }
         let kept = self.scratch.clone();
         let found = self.lead_with_forces().is_ok().then(|| {
             let then = self.model.power(&self.scratch.at(), &self.scratch.lambda);
-            (then, self.brought_in(span, [begin, then]))
+            (then, self.missed(span, [begin, then], energy))
         });
         self.scratch = kept;
         found
     }
 
-    /// The mean power over a part of the last step by Simpson's rule, on halves where that isn't enough.
-    fn mean_power(&mut self, [from, to]: [f64; 2], ends: [Power; 2], halvings: u32) -> Option<Power> {
+    /// The mean power over a part of the last step by Simpson's rule, on halves where that mends more than `rest` [J].
+    fn mean_power(
+        &mut self,
+        [from, to]: [f64; 2],
+        ends: [Power; 2],
+        rest: f64,
+        halvings: u32,
+    ) -> Option<Power> {
         let middle = 0.5 * (from + to);
         Dense::new(&self.model, &self.previous, &self.state).at(middle, &mut self.scratch);
         self.lead_with_forces().ok()?;
@@ -85,11 +98,11 @@ impl Simulation {
         let rough = Power::between(ends[0], ends[1], 0.5);
         let off = (to - from) * (there.supplied - there.dissipated - rough.supplied + rough.dissipated).abs();
         // what Simpson's rule leaves is far less than what it mends
-        if halvings == 0 || off <= MENDED * self.audit.scale {
+        if halvings == 0 || off <= rest {
             return Some(Power::between(rough, there, 2.0 / 3.0));
         }
-        let first = self.mean_power([from, middle], [ends[0], there], halvings - 1)?;
-        let second = self.mean_power([middle, to], [there, ends[1]], halvings - 1)?;
+        let first = self.mean_power([from, middle], [ends[0], there], rest, halvings - 1)?;
+        let second = self.mean_power([middle, to], [there, ends[1]], rest, halvings - 1)?;
         Some(Power::between(first, second, 0.5))
     }
 

@@ -383,9 +383,8 @@ impl Simulation {
             };
             let h = self.state.t - self.previous.t;
             self.accounted = (self.audit, self.power);
-            self.audit.add(h, energy, self.power, power);
-            let more = self.brought_in([self.previous.t, self.state.t], [self.power, power]);
-            self.audit.correct(more);
+            let missed = self.missed([self.previous.t, self.state.t], [self.power, power], energy);
+            self.audit.add_all(h, energy, self.power, power, missed);
             self.power = power;
             self.work.clocks.stop(Phase::Audit, begin);
         }
@@ -475,11 +474,10 @@ impl Simulation {
             let (before, power) = self.accounted;
             let energy = self.model.energy(&self.scratch.at());
             let straight = Power::between(power, self.power, (now - begin) / (end - begin));
-            let led = self.led_inside([begin, now], power);
-            let (then, more) = led.unwrap_or((straight, Power::zero()));
+            let led = self.led_inside([begin, now], power, energy);
+            let (then, missed) = led.unwrap_or((straight, Power::zero()));
             self.shown = before;
-            self.shown.add(now - begin, energy, power, then);
-            self.shown.correct(more);
+            self.shown.add_all(now - begin, energy, power, then, missed);
         }
     }
 
