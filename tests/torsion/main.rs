@@ -2,6 +2,7 @@
 
 mod births;
 mod closed;
+mod damping;
 mod dynamics;
 mod feeding;
 #[cfg(feature = "contact")]

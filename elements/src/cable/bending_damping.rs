@@ -16,7 +16,7 @@ use ropewalk_core::{Batch, Dual, Element, Local, Power, Real, Share, V3, Weights
 /// and the dissipated power is `∫ η EI |β|² dx`. Damping is the same for a straight cable and a bent one, in its plane and
 /// out of it, however small the motion: small vibrations of a straight cable have damping ratios of `ηω/2`. A shape that
 /// whirls about the line between its ends is damped too, for its fibres are strained to and fro. A bent cable that turns as
-/// a rigid body loses nothing unless it turns about its own tangent, which its centre line can't tell from whirling.
+/// a rigid body loses nothing unless it turns about its own tangent, which its centre line can't tell from whirling: with torsion [`SectionDamping`](super::SectionDamping) can.
 #[derive(Clone, Copy, Debug)]
 pub struct BendingDamping {
     /// Unstretched length [m].

@@ -147,8 +147,9 @@ impl CableSpec {
             push_axial_damping(pools, model, params.l, s.axial_retardation_time * s.ea, on)
                 .map_err(BuildError::new)?;
         }
-        if s.bending_retardation_time > 0.0 && s.ei.across > 0.0 {
-            push_bending_damping(pools, model, params.l, s.bending_retardation_time * s.ei.mean(), on)
+        // sections that turn are damped in axes of their own
+        if s.bending_retardation_time > 0.0 && s.ei.across > 0.0 && !twists {
+            push_bending_damping(pools, model, params.l, s.bending_retardation_time * s.ei.across, on)
                 .map_err(BuildError::new)?;
         }
         Ok(())

@@ -163,6 +163,18 @@ impl<R: Real> Section<R> {
         out
     }
 
+    /// How the curvature about either director changes with the variables.
+    #[inline(always)]
+    pub fn gradients(&self, twisting: &Twisting<R>, il: R) -> [[R; VARIABLES]; 2] {
+        let ([kd, ke], spin) = (self.k, self.spin(twisting));
+        let mut by = [self.lift(&self.bends(&self.d, kd), il), self.lift(&self.bends(&self.e, ke), il)];
+        for i in 0..VARIABLES {
+            by[0][i] = ke.fma(spin[i], by[0][i]);
+            by[1][i] = (-kd).fma(spin[i], by[1][i]);
+        }
+        by
+    }
+
     /// Adds `s` times a force, with the moments `m` about both directors, to `f`; and `s` times its derivative to `h`,
     /// moments that stay and those of the stiffness `stiff` about the first director.
     #[inline(always)]

@@ -74,7 +74,9 @@ pub struct Section {
     /// slope here.
     #[serde(default, deserialize_with = "quantity::time")]
     pub axial_retardation_time: f64,
-    /// Retardation time of bending (Kelvin–Voigt) [s]: the moment is `EI (κ + τ κ̇)`, with the largest slope of a table.
+    /// Retardation time of bending (Kelvin–Voigt) [s]: the moment is `EI (κ + τ κ̇)`, with the largest slope of a table. The rate is
+    /// that in axes of the section where the cable has torsion, `gj`, and no end feeds, so that a bent shaft that spins is damped; else
+    /// that seen along the tangent.
     #[serde(default, deserialize_with = "quantity::time")]
     pub bending_retardation_time: f64,
     /// Retardation time of twisting (Kelvin–Voigt) [s]: the torque is `GJ (φ' + τ dφ'/dt)`.

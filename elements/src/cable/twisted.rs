@@ -6,6 +6,7 @@ use super::layout::Layout;
 use super::quadrature::{MOST, Point, Points, Quadrature, Rule};
 use super::rest::STRAIGHT;
 use super::section::Section;
+use super::section_damping::SectionDamping;
 use super::shape::{combine, natural, second};
 use super::spin::SpinInertia;
 use super::torque_tension::TorqueTension;
@@ -53,6 +54,8 @@ struct Bar {
     rho_j: f64,
     gyroscopic: bool,
     ei: BendingStiffness,
+    /// Its damping about both directors, `η EI` [N m² s].
+    eta_ei: [f64; 2],
     /// Torque and tension of a laid rope: `C/GJ` [1/m].
     lay: f64,
     /// Whether bending has a direction.
@@ -67,7 +70,12 @@ impl Bar {
         let rho_j = rotary_inertia(s).map_err(|e| e.of(format!("{field}.rotary_inertia")))?;
         let eta_gj = s.torsional_retardation_time * gj;
         let (lay, directed) = (s.torque_tension / gj, s.ei.has_direction());
-        Ok(Bar { gj, eta_gj, rho_j, gyroscopic: s.gyroscopic, ei: s.ei, lay, directed })
+        let eta_ei = [s.ei.about_normal, s.ei.across].map(|ei| s.bending_retardation_time * ei);
+        Ok(Bar { gj, eta_gj, rho_j, gyroscopic: s.gyroscopic, ei: s.ei, eta_ei, lay, directed })
+    }
+    /// Whether its bending is damped.
+    fn bends_slowly(&self) -> bool {
+        self.eta_ei.iter().any(|eta| *eta > 0.0)
     }
 }
 
@@ -356,6 +364,9 @@ impl Twisted {
             if gyroscopic {
                 b.element(SpinInertia { l, rho_j }, &on)?;
             }
+            if !self.bars[k].directed && self.bars[k].bends_slowly() {
+                b.element::<_, 20, 14>(self.damping(k, l), &on)?;
+            }
         }
         self.bubbles = vec![None; mesh.len() - 1];
         for k in layout.elements().filter(|&k| self.bars[k].directed) {
@@ -365,7 +376,11 @@ impl Twisted {
             self.bubbles[k] = Some((bubble, own.q, own.v));
             let on = [nodes[k], nodes[k + 1], bubble];
             let Some(line) = flows(k) else {
-                b.element(self.bending(k, mesh[k + 1] - mesh[k]), &on)?;
+                let l = mesh[k + 1] - mesh[k];
+                b.element(self.bending(k, l), &on)?;
+                if self.bars[k].bends_slowly() {
+                    b.element::<_, 21, 15>(self.damping(k, l), &on)?;
+                }
                 continue;
             };
             let boundaries = line.boundaries.iter().map(|(_, boundary)| boundary.node);
@@ -376,6 +391,11 @@ impl Twisted {
             }
         }
         Ok(())
+    }
+
+    /// The damping of its bending.
+    fn damping(&self, k: usize, l: f64) -> SectionDamping {
+        SectionDamping::new(l, self.bars[k].eta_ei, self.integration.bending())
     }
 
     fn params(&self, k: usize, l: f64) -> TorsionParams {

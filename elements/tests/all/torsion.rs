@@ -4,9 +4,10 @@ use ropewalk_core::model::twist::{across, between, carried, relabel};
 use ropewalk_core::rotation::cross;
 use ropewalk_core::testing::{check_tangent, dense};
 use ropewalk_core::{At, Element, Node, NodeId, NodeKind, Pool, Term, V3, Weights, Width, dot, retract};
-use ropewalk_elements::cable::quadrature::{Gauss2, Lobatto3, Quadrature};
+use ropewalk_elements::cable::quadrature::{Gauss2, Gauss5, Lobatto3, Quadrature};
 use ropewalk_elements::cable::{
-    Directed, DirectedParams, SpinInertia, TorqueTension, Torsion, TorsionDamping, TorsionParams,
+    Directed, DirectedParams, SectionDamping, SpinInertia, TorqueTension, Torsion, TorsionDamping,
+    TorsionParams,
 };
 use serde_json::Value;
 
@@ -136,6 +137,8 @@ fn terms() -> Vec<(&'static str, Box<dyn Term>)> {
         ("damping", Box::new(pool(damping, &BOTH))),
         ("spin", Box::new(pool(SpinInertia { l: L, rho_j: 0.3 }, &BOTH))),
         ("directed", Box::new(pool(Directed::new(params, kappa0, Gauss2), &ALL))),
+        ("bending damping", Box::new(pool::<_, 20, 14>(SectionDamping::new(L, [0.7, 0.3], Gauss2), &BOTH))),
+        ("with a bubble", Box::new(pool::<_, 21, 15>(SectionDamping::new(L, [0.7, 0.3], Gauss5), &ALL))),
     ]
 }
 
@@ -150,6 +153,28 @@ fn tangents_are_derivatives_at_every_width() {
                 assert!(error < 1e-8, "{name}: {error}");
             }
         }
+    }
+}
+
+/// Damping of bending lets a cable turn as it likes, about its own axis too, unless it is bent and its sections turn in it.
+#[test]
+fn what_turns_as_a_rigid_body_is_not_damped() {
+    let damping = pool::<_, 21, 15>(SectionDamping::new(L, [0.7, 0.3], Gauss5), &ALL);
+    for q in states() {
+        let (still, spin) = ([0.0; 15], [0.4, -1.1, 0.7]);
+        let turning = |own: f64| -> Vec<f64> {
+            let mut v = Vec::new();
+            for x in [&q[..10], &q[10..20]] {
+                let slope: V3<f64> = [x[3], x[4], x[5]];
+                v.extend(cross(&spin, &[x[0], x[1], x[2]]));
+                v.extend(cross(&spin, &slope));
+                v.push(own + dot(&spin, &slope) / dot(&slope, &slope).sqrt());
+            }
+            v.push(0.0);
+            v
+        };
+        let power = |own: f64| damping.power(&at(&q, &turning(own), &still)).dissipated;
+        assert!(power(0.0) < 1e-24 && power(1.0) > 1e-3, "{:e} {:e}", power(0.0), power(1.0));
     }
 }
 
