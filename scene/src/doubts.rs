@@ -7,6 +7,8 @@ use std::f64::consts::TAU;
 
 /// What counts as being in the bed, as a share of the depth: lines are laid on it.
 const IN_THE_BED: f64 = 0.01;
+/// By what share of the depth a bed may lie elsewhere.
+const OFF: f64 = 0.1;
 /// A share of the waves' energy that responses may leave out.
 const LEFT_OUT: f64 = 0.1;
 
@@ -19,6 +21,10 @@ impl Scene {
         let vessels = self.constraints.iter().filter_map(|c| Some((c.name(), c.responses()?)));
         let floats = self.forces.iter().filter_map(|f| f.responses());
         all.extend(vessels.chain(floats).filter_map(|(name, rao)| beyond(name, rao, &waves)));
+        all.extend(
+            self.forces.iter().filter_map(|f| f.bed()).filter_map(|bed| elsewhere(bed, level, waves.depth())),
+        );
+        all.extend(water.repeats(self.run.duration));
         all.extend(model.parts().iter().filter_map(|part| below(part.as_ref(), at, level, waves.depth())));
         all
     }
@@ -40,6 +46,17 @@ fn beyond(name: &str, rao: &RaoSpec, waves: &Waves) -> Option<String> {
             TAU / high,
             TAU / low,
             100.0 * share
+        )
+    })
+}
+
+/// That the bed lies elsewhere than waves feel it.
+fn elsewhere((name, height): (&str, f64), level: f64, depth: f64) -> Option<String> {
+    let down = level - height;
+    (depth.is_finite() && (down - depth).abs() > OFF * depth).then(|| {
+        format!(
+            "`{name}` lies {down} m under the surface, and waves are those of water {depth} m deep: let [water.waves] have the \
+             `depth` of the bed"
         )
     })
 }

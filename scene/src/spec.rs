@@ -78,6 +78,10 @@ pub trait ForceSpec: Debug + Send + Sync {
     fn responses(&self) -> Option<(&str, &RaoSpec)> {
         None
     }
+    /// The height of the level bed that it is, with its name [m].
+    fn bed(&self) -> Option<(&str, f64)> {
+        None
+    }
     /// What one should know about it, one sentence each.
     fn notes(&self) -> Vec<String> {
         Vec::new()

@@ -144,6 +144,17 @@ impl Water {
             )
         })
     }
+    /// What one should know of a run that lasts longer than its waves were measured [s]: they repeat.
+    pub fn repeats(&self, duration: f64) -> Option<String> {
+        let waves = self.waves.as_ref()?;
+        let lasts = waves.measured.as_ref()?.lasts()?;
+        (duration > lasts).then(|| {
+            format!(
+                "the waves were measured for {lasts} s, and the run lasts {duration} s: from then on they repeat \
+                 themselves"
+            )
+        })
+    }
     /// What is wrong with the numbers, if anything.
     pub fn check(&self) -> Result<(), BuildError> {
         positive("density", self.density).map_err(|e| e.of("water.density"))?;

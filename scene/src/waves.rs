@@ -224,6 +224,12 @@ impl MeasuredSea {
         Ok((rows.iter().map(|row| row[1]).collect(), dt))
     }
 
+    /// How long its record is [s].
+    pub fn lasts(&self) -> Option<f64> {
+        let (elevation, dt) = self.read().ok()?;
+        Some(dt * elevation.len() as f64)
+    }
+
     fn waves(&self, direction: f64) -> Result<Vec<Regular>, BuildError> {
         let wrong = |why: String| {
             let message = format!("record `{}`: {why}", self.file.display());

@@ -160,6 +160,9 @@ impl BedSpec {
 
 #[typetag::serde(name = "bed")]
 impl ForceSpec for BedSpec {
+    fn bed(&self) -> Option<(&str, f64)> {
+        (self.grid.is_none() && self.slope == 0.0).then_some((self.name.as_str(), self.point[2]))
+    }
     fn markers(&self) -> Vec<&MarkerRef> {
         Vec::new()
     }

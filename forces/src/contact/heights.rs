@@ -213,6 +213,15 @@ impl Heights {
         sum
     }
 
+    /// How far a point is beyond the borders of the grid [m]; nought inside.
+    pub(super) fn beyond(&self, x: &V3<f64>) -> f64 {
+        let out = |lines: &[f64], x: f64| {
+            let (first, last) = (lines[0], lines[lines.len() - 1]);
+            (first - x).max(x - last).max(0.0)
+        };
+        out(&self.x, x[0]).hypot(out(&self.y, x[1]))
+    }
+
     /// The surface as seen from a point.
     pub(super) fn gap(&self, x: &V3<f64>, reach: f64) -> Option<Gap> {
         let [h, a, b, ..] = self.at(x[0], x[1]);

@@ -3,6 +3,7 @@
 use super::group::{Group, Scratch, What};
 use super::search::{Depth, Search};
 use super::seat::{Frame, Seat};
+use super::shape::Shape;
 use super::term::Contact;
 use ropewalk_core::rotation::times;
 use ropewalk_core::{At, Attitude, Column, Shows, Solid, SpanLine, V3};
@@ -75,6 +76,26 @@ impl Contact {
             )
         })
     }
+
+    /// What to say where something lies on a bed of which the grid says nothing.
+    fn beyond(&self, at: &At<'_>) -> Option<String> {
+        let Shape::Heights(heights) = &self.fixed.shape else { return None };
+        let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
+        let mut farthest = 0.0_f64;
+        for group in &self.groups {
+            if self.depth(group, &frame, at, &mut scratch).is_some() {
+                let there = self.fixed.inside(&frame, &group.held().x(at));
+                farthest = farthest.max(heights.beyond(&there));
+            }
+        }
+        (farthest > 0.0).then(|| {
+            format!(
+                "`{}`: something lies up to {farthest:.3} m beyond the borders of the grid, where the bed goes on with the slope \
+                 that it has there. Give it heights as far as that",
+                self.label
+            )
+        })
+    }
 }
 
 impl Shows for Contact {
@@ -137,7 +158,7 @@ impl Shows for Contact {
         vec![Solid { name: self.label.clone(), surface: fixed.shape.surface(), carrier, seat }]
     }
     fn remark(&self, at: &At<'_>) -> Option<String> {
-        self.coarse(at)
+        self.beyond(at).or_else(|| self.coarse(at))
     }
     fn local(&self, quantity: &str, part: &str, s: f64, at: &At<'_>) -> Option<f64> {
         if quantity == "clearance" { self.clearance(part, s, at) } else { None }

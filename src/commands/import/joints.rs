@@ -106,7 +106,10 @@ pub(super) fn records(
                     places.push(id.to_string());
                 }
             }
-            _ => left.push(word.text.clone()),
+            _ => match end {
+                Some(id) => left.push(format!("{} (there is no line `{id}`)", word.text)),
+                None => left.push(word.text.clone()),
+            },
         }
     }
     for id in places {

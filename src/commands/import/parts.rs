@@ -135,8 +135,16 @@ pub(super) fn line<'a>(
     let [a, b] = [(2, "point at its end A"), (3, "point at its end B")];
     let ends =
         [ends(deck, deck.word(row, a.0, a.1)?, points)?, ends(deck, deck.word(row, b.0, b.1)?, points)?];
+    if ends[0] == ends[1] {
+        let message = format!("both ends of this line are at point `{}`", ends[0]);
+        return Err(deck.word_fault(&message, deck.word(row, b.0, b.1)?));
+    }
     let (length, segments) =
         (deck.positive(row, 4, "unstretched length")?, deck.positive(row, 5, "number of segments")?);
+    if segments.fract() != 0.0 {
+        let message = format!("the number of segments must be whole, not {segments}");
+        return Err(deck.word_fault(&message, deck.word(row, 5, "number of segments")?));
+    }
     // a ratio is that of the shortest wave of a segment, as MoorDyn has it
     let damping = match found.damping {
         ratio if ratio < 0.0 => -ratio * length / segments.max(1.0) * (found.ea * found.mass).sqrt(),
