@@ -92,9 +92,26 @@ pub(super) struct Section<R> {
     inverse: R,
 }
 
+/// Shares of `m`, `A` and the bubble in the angle of a section.
+#[inline(always)]
+fn angle<R: Real>(at: &Point) -> [R; 3] {
+    let xi = at.xi;
+    [R::of(xi), R::of(xi - xi * xi * xi), R::of(4.0 * xi * (1.0 - xi))]
+}
+
 impl<R: Real> Section<R> {
     #[inline(always)]
     pub fn new(x: &[R; COORDINATES], twisting: &Twisting<R>, at: &Point, il: R) -> Self {
+        let [by_twist, by_area, by_bubble] = angle::<R>(at);
+        let turn = by_twist
+            .fma(twisting.twist - twisting.area, by_area.fma(twisting.area, by_bubble.fma(x[20], x[9])));
+        Section::turned(x, twisting, at, il, Some(turn))
+    }
+
+    /// The same of a section that is turned by an angle from the reference director of the first node; without one with the
+    /// directors that aren't turned, which do as well where all directions are alike.
+    #[inline(always)]
+    pub fn turned(x: &[R; COORDINATES], twisting: &Twisting<R>, at: &Point, il: R, turn: Option<R>) -> Self {
         let [f0, f1, f2] = at.phi;
         let [s1, s2] = at.psi;
         let first = [R::of(f1), R::of(f0 - f1 - f2), R::of(f2)];
@@ -109,20 +126,17 @@ impl<R: Real> Section<R> {
         let a = dot(&p, &p);
         let inverse = R::of(1.0) / a.sqrt();
         let (t, t1, u) = (times(inverse, &p), twisting.e[0], three(x, 6));
-        let xi = at.xi;
-        let angle = [R::of(xi), R::of(xi - xi * xi * xi), R::of(4.0 * xi * (1.0 - xi))];
-        let turn = angle[0]
-            .fma(twisting.twist - twisting.area, angle[1].fma(twisting.area, angle[2].fma(x[20], x[9])));
-        let (sin, cos) = (turn.map(f64::sin), turn.map(f64::cos));
-        let w = cross(&t1, &u);
-        let own = plus(&times(cos, &u), sin, &w);
+        let own = match turn {
+            None => u,
+            Some(turn) => plus(&times(turn.map(f64::cos), &u), turn.map(f64::sin), &cross(&t1, &u)),
+        };
         let holonomy = Holonomy::new([t1, t], [twisting.inverse[0], inverse]);
         let along = dot(&own, &t) / (R::of(1.0) + dot(&t1, &t));
         let d = plus(&own, -along, &plus(&t1, R::of(1.0), &t));
         let e = cross(&t, &d);
         let curvature = times(inverse * inverse, &cross(&p, &q));
         let k = [dot(&curvature, &d), dot(&curvature, &e)];
-        Section { first, second, p, q, d, e, k, holonomy, angle, xi: R::of(xi), inverse }
+        Section { first, second, p, q, d, e, k, holonomy, angle: angle(at), xi: R::of(at.xi), inverse }
     }
 
     /// How the spin of the section changes.
@@ -301,9 +315,20 @@ pub(super) fn count(variable: usize) -> usize {
 }
 
 pub(super) fn twisting<R: Real>(x: &[R; COORDINATES], il: R) -> Twisting<R> {
+    Twisting::new(&pair(x), il)
+}
+
+/// The same but for the twist itself.
+#[inline(always)]
+pub(super) fn derivatives<R: Real>(x: &[R; COORDINATES], il: R) -> Twisting<R> {
+    Twisting::derivatives(&pair(x), il)
+}
+
+#[inline(always)]
+fn pair<R: Real>(x: &[R; COORDINATES]) -> [R; 20] {
     let mut nodes = [R::zero(); 20];
     nodes.copy_from_slice(&x[..20]);
-    Twisting::new(&nodes, il)
+    nodes
 }
 
 /// Curvature about both directors of the section at a point of an element with these coordinates and bubble [1/m].

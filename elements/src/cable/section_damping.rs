@@ -1,7 +1,7 @@
 //! Kelvin–Voigt damping of bending where sections turn.
 
-use super::directed::{self, ANGLES, BUBBLE, Section, VARIABLES, count, dofs, twisting};
-use super::quadrature::{Points, Quadrature};
+use super::directed::{self, ANGLES, BUBBLE, Section, VARIABLES, count, derivatives, dofs, twisting};
+use super::quadrature::{Point, Points, Quadrature};
 use super::twisting::{SECOND, Twisting, three, times};
 use ropewalk_core::rotation::cross;
 use ropewalk_core::{Batch, Element, Local, Power, Real, Share, Weights};
@@ -20,7 +20,7 @@ use ropewalk_core::{Batch, Element, Local, Power, Real, Share, Weights};
 pub struct SectionDamping {
     /// Unstretched length [m].
     pub l: f64,
-    /// `η EI` about the first director and the second [N m² s].
+    /// `η EI` about the first director and the second [N m² s], which without a bubble are alike.
     pub eta_ei: [f64; 2],
     /// Where the curvature is taken.
     pub rule: Points,
@@ -61,7 +61,7 @@ impl<R: Real> Moving<R> {
         let il = R::of(1.0) / l;
         let mut x = [R::zero(); directed::COORDINATES];
         x[..C].copy_from_slice(&at.q);
-        let twisting = twisting(&x, il);
+        let twisting = if V < directed::VELOCITIES { derivatives(&x, il) } else { twisting(&x, il) };
         let mut v = [R::zero(); VARIABLES];
         for (i, v) in v.iter_mut().enumerate() {
             for &(dof, share) in &dofs(i, il)[..counted::<V>(i)] {
@@ -74,6 +74,16 @@ impl<R: Real> Moving<R> {
             *turn = times(R::of(-0.5) * i * i, &cross(&twisting.e[end], &three(&at.v, at_v)));
         }
         Moving { x, twisting, il, v, turns }
+    }
+
+    /// The section at a point: without a bubble all directions are alike.
+    #[inline(always)]
+    fn section<const V: usize>(&self, at: &Point) -> Section<R> {
+        if V < directed::VELOCITIES {
+            Section::turned(&self.x, &self.twisting, at, self.il, None)
+        } else {
+            Section::new(&self.x, &self.twisting, at, self.il)
+        }
     }
 
     #[inline(always)]
@@ -130,14 +140,17 @@ impl<R: Real> SectionDampingLanes<R> {
         let (mut f, mut h) = ([zero; VARIABLES], [[zero; VARIABLES]; VARIABLES]);
         let mut k = [[zero; VARIABLES]; VARIABLES];
         for at in self.rule.points() {
-            let section = Section::new(&moving.x, &moving.twisting, at, moving.il);
+            let section = moving.section::<V>(at);
             let by = section.gradients(&moving.twisting, moving.il);
             let s = R::of(at.w) * self.l;
             let m = [self.eta_ei[0] * moving.rate(&by[0]), self.eta_ei[1] * moving.rate(&by[1])];
-            section.add::<TANGENT>(&moving.twisting, s, m, zero, moving.il, &mut f, &mut h);
             if !TANGENT {
+                for i in 0..VARIABLES {
+                    f[i] = s.fma(m[0].fma(by[0][i], m[1] * by[1][i]), f[i]);
+                }
                 continue;
             }
+            section.add::<true>(&moving.twisting, s, m, zero, moving.il, &mut f, &mut h);
             for which in 0..2 {
                 let change = moving.change(&section, which, &by[which]);
                 for i in 0..VARIABLES {
@@ -168,7 +181,7 @@ impl<R: Real> SectionDampingLanes<R> {
         let moving = Moving::new(self.l, x);
         let mut dissipated = R::zero();
         for at in self.rule.points() {
-            let section = Section::new(&moving.x, &moving.twisting, at, moving.il);
+            let section = moving.section::<V>(at);
             let by = section.gradients(&moving.twisting, moving.il);
             for which in 0..2 {
                 let rate = moving.rate(&by[which]);
@@ -181,11 +194,10 @@ impl<R: Real> SectionDampingLanes<R> {
 
 /// On two nodes, and with a bubble as a third.
 macro_rules! on_nodes {
-    ($coordinates:literal, $velocities:literal) => {
+    ($coordinates:literal, $velocities:literal, $wide:literal) => {
         impl Element<$coordinates, $velocities> for SectionDamping {
             type Lanes<R: Real> = SectionDampingLanes<R>;
-            // its code is long, and wide copies of it take longer to compile than they save
-            const WIDE: bool = false;
+            const WIDE: bool = $wide;
 
             fn label(&self) -> String {
                 format!("bending damping of sections {}", self.rule.label())
@@ -214,11 +226,12 @@ macro_rules! on_nodes {
                 lanes: &SectionDampingLanes<R>,
                 x: &Local<R, $coordinates, $velocities>,
             ) -> Power<R> {
-                lanes.power(x)
+                lanes.power::<$coordinates, $velocities>(x)
             }
         }
     };
 }
 
-on_nodes!(20, 14);
-on_nodes!(21, 15);
+on_nodes!(20, 14, true);
+// its code is long, and wide copies of it take longer to compile than they save
+on_nodes!(21, 15, false);

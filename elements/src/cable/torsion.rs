@@ -165,7 +165,7 @@ impl Element<COORDINATES, VELOCITIES> for TorsionDamping {
         out: &mut Share<R, VELOCITIES>,
     ) {
         let (il, one) = (R::of(1.0) / l, R::of(1.0));
-        let twisting = Twisting::new(&x.q, il);
+        let twisting = Twisting::derivatives(&x.q, il);
         let g = on_dofs(&twisting.gradient(one, one), il);
         let (c, rate) = (eta_gj * il, rate(&g, &x.v));
         for i in 0..VELOCITIES {
@@ -194,7 +194,7 @@ impl Element<COORDINATES, VELOCITIES> for TorsionDamping {
         x: &Local<R, COORDINATES, VELOCITIES>,
     ) -> Power<R> {
         let (il, one) = (R::of(1.0) / l, R::of(1.0));
-        let g = on_dofs(&Twisting::new(&x.q, il).gradient(one, one), il);
+        let g = on_dofs(&Twisting::derivatives(&x.q, il).gradient(one, one), il);
         let rate = rate(&g, &x.v);
         Power { dissipated: eta_gj * il * rate * rate, ..Power::zero() }
     }

@@ -144,16 +144,25 @@ impl<R: Real> Twisting<R> {
     /// Of an element with these coordinates; `il = 1/L`.
     #[inline(always)]
     pub fn new(q: &[R; COORDINATES], il: R) -> Self {
+        let all = Twisting::derivatives(q, il);
+        let ([t1, _, t2], u1, u2) = (&all.e, three(q, 6), three(q, 16));
+        let (w1, w2) = (cross(t1, &u1), cross(t2, &u2));
+        let sine = dot(&w1, &u2) - dot(&u1, &w2);
+        let cosine = R::of(1.0) + dot(&u1, &u2) + dot(&w1, &w2) + dot(t1, t2);
+        let angle = R::each(|l| 2.0 * sine.lane(l).atan2(cosine.lane(l)));
+        Twisting { twist: q[19] - q[9] + angle + all.area, ..all }
+    }
+
+    /// All but the twist itself: what has to do with its rate needs no more.
+    #[inline(always)]
+    pub fn derivatives(q: &[R; COORDINATES], il: R) -> Self {
         let one = R::of(1.0);
         let delta = [il * (q[10] - q[0]), il * (q[11] - q[1]), il * (q[12] - q[2])];
         let p = [three(q, 3), delta, three(q, 13)];
         let inverse =
             [one / dot(&p[0], &p[0]).sqrt(), one / dot(&p[1], &p[1]).sqrt(), one / dot(&p[2], &p[2]).sqrt()];
         let e = [times(inverse[0], &p[0]), times(inverse[1], &p[1]), times(inverse[2], &p[2])];
-        let ([t1, chord, t2], u1, u2) = (&e, three(q, 6), three(q, 16));
-        let (w1, w2, c) = (cross(t1, &u1), cross(t2, &u2), dot(t1, t2));
-        let (sine, cosine) = (dot(&w1, &u2) - dot(&u1, &w2), one + dot(&u1, &u2) + dot(&w1, &w2) + c);
-        let angle = R::each(|l| 2.0 * sine.lane(l).atan2(cosine.lane(l)));
+        let ([t1, chord, t2], c) = (&e, dot(&e[0], &e[2]));
         let (across_12, across_2d, across_d1) = (cross(t1, t2), cross(t2, chord), cross(chord, t1));
         let v = dot(chord, &across_12);
         let ia = one / (one + dot(t1, chord) + dot(chord, t2) + c);
@@ -169,7 +178,7 @@ impl<R: Real> Twisting<R> {
         }
         let holonomy = Holonomy::new([*t1, *t2], [inverse[0], inverse[2]]);
         let area = four * v;
-        Twisting { e, inverse, holonomy, area, twist: q[19] - q[9] + angle + area, ia, v, by, across }
+        Twisting { e, inverse, holonomy, area, twist: R::zero(), ia, v, by, across }
     }
 
     /// `x` times the derivative of `m` and `y` times that of `A` by both slopes and `Δ`.

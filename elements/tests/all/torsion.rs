@@ -137,7 +137,7 @@ fn terms() -> Vec<(&'static str, Box<dyn Term>)> {
         ("damping", Box::new(pool(damping, &BOTH))),
         ("spin", Box::new(pool(SpinInertia { l: L, rho_j: 0.3 }, &BOTH))),
         ("directed", Box::new(pool(Directed::new(params, kappa0, Gauss2), &ALL))),
-        ("bending damping", Box::new(pool::<_, 20, 14>(SectionDamping::new(L, [0.7, 0.3], Gauss2), &BOTH))),
+        ("bending damping", Box::new(pool::<_, 20, 14>(SectionDamping::new(L, [0.4, 0.4], Gauss2), &BOTH))),
         ("with a bubble", Box::new(pool::<_, 21, 15>(SectionDamping::new(L, [0.7, 0.3], Gauss5), &ALL))),
     ]
 }

@@ -34,10 +34,11 @@ pub(super) fn describe(model: &Model, q: &[f64], shape: &[f64]) -> String {
         return format!("{who} moves");
     };
     if !(left < RIGID) {
-        let farthest =
-            moving.iter().max_by(|a, b| size_of(a.1, shape, length).total_cmp(&size_of(b.1, shape, length)));
+        // what turns most needn't move
+        let way = |n: &Node| -> V3<f64> { std::array::from_fn(|i| shape[n.v + i]) };
+        let farthest = moving.iter().max_by(|a, b| norm(&way(a.1)).total_cmp(&norm(&way(b.1))));
         let Some((k, n)) = farthest else { return format!("{who} moves") };
-        let d: V3<f64> = std::array::from_fn(|i| shape[n.v + i]);
+        let d = way(n);
         let part = model.parts().iter().find_map(|p| {
             p.place_of(NodeId(*k as u32))
                 .map(|place| format!("`{}` {place}", p.name()).trim_end().to_string())
