@@ -129,6 +129,27 @@ fn tangents_on_heights_and_of_damping_on_approach_are_exact() {
     }
 }
 
+/// A line that lies along a plane but for rounding touches it nowhere: in search of where, millions of places were looked at.
+#[test]
+fn what_lies_along_a_plane_but_for_rounding_does_not_touch_it() {
+    let (long, marker) = (61.7, Marker::Ground { point: [0.0; 3], axes: ropewalk_core::rotation::IDENTITY });
+    for k in 1..=8 {
+        let (from, radius) = (25.3 * f64::from(k), 0.0137 * f64::from(k));
+        let q = [from, 3.0, radius, 1.0, 0.0, 0.0, from + long, 3.0, radius, 1.0, 0.0, 0.0];
+        let (nodes, ..) = lying(Shape::Plane, ContactLaw::default(), 0.0);
+        let line = SpanLine::Cubic { q: [0, 3, 6, 9], v: [0, 3, 6, 9], l: long };
+        let span = ContactSpan { line, radius, length: long, s: 0.0, tips: [false; 2], flow: None };
+        let stiffness = Stiffness { point: 0.0, per_length: 1e4, end: Some(0.0), area: None };
+        let all: (&[_], &[_]) = (&[], &[span]);
+        let contact =
+            Contact::new("bed", &nodes, Shape::Plane, &marker, all, stiffness, ContactLaw::default())
+                .expect("contact");
+        let still = [0.0; 12];
+        let at = At { t: 0.0, q: &q, v: &still, a: &still, internal: &[], relaxed: None };
+        assert_eq!(contact.depths(&at).collect::<Vec<_>>(), [None], "{radius}");
+    }
+}
+
 /// What lies level all along goes a way of its own, which has to be that of any shape.
 #[test]
 fn a_plane_is_what_heights_are_that_make_a_plane() {

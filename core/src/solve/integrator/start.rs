@@ -162,7 +162,7 @@ fn inconsistent(
         worst.map_or(String::new(), |(c, _)| format!(" (most in `{}`)", model.constraints()[c].name()));
     format!(
         "the initial {what} don't meet the constraints: meeting them moves the model by {size:.3e} {unit} \
-         (root mean square along the part that is moved most){name}. Correct the start, or set `project = true` to accept it"
+         (root mean square along the part that is moved most){name}. Correct the start, let motions and waves begin at rest (`ramp`), or set `project = true` to accept it"
     )
 }
 

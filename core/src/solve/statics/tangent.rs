@@ -135,7 +135,7 @@ impl Statics<'_> {
         }
     }
 
-    /// What outweighs the assembled stiffness, of positions and of what has no length: twice its largest diagonal entry, as
+    /// What outweighs the assembled stiffness, of positions and of what has no length: more than its largest diagonal entry, as
     /// one that is negative must not be cancelled; where there are none before constraints have their forces, that of the
     /// load over its reference length.
     pub(super) fn stiffest(&self) -> [f64; 2] {
@@ -155,7 +155,7 @@ impl Statics<'_> {
         if !(largest[1] > 0.0) {
             largest[1] = largest[0] * length.powi(2);
         }
-        largest.map(|x| 2.0 * x)
+        largest.map(|x| 1.1 * x)
     }
 
     /// Velocities and accelerations of the frame at a configuration.
