@@ -91,10 +91,19 @@ fn event(name: &str, times: &[f64]) -> String {
     }
 }
 
+/// A part of other numbers that rounding makes.
+const ROUNDING: f64 = 1e-15;
+
 /// The last values of a record, under the names that its columns have in the history: those that differ only behind
 /// their last point, as `hose.end.x` and `hose.end.y`, on one line, and each unit once.
 pub(super) fn finals(columns: &[Column]) -> Vec<(String, String)> {
-    let value = |c: &Column| c.values.last().map_or("-".to_string(), |x| number(*x));
+    // beside others of its unit, what is nothing but their rounding is nought
+    let largest = |unit: &str| {
+        let last = columns.iter().filter(|c| c.unit == unit).filter_map(|c| c.values.last());
+        last.fold(0.0, |m: f64, x| m.max(x.abs()))
+    };
+    let shown = |c: &Column, x: f64| if x.abs() <= ROUNDING * largest(&c.unit) { 0.0 } else { x };
+    let value = |c: &Column| c.values.last().map_or("-".to_string(), |x| number(shown(c, *x)));
     let stem = |c: &Column| c.name.rsplit_once('.').map(|(stem, _)| stem.to_string());
     let shared = columns
         .first()
@@ -135,6 +144,12 @@ mod tests {
         let reaction = [column("ship.fx", "N"), column("ship.magnitude", "N"), column("ship.mx", "N m")];
         assert_eq!(finals(&reaction), [("ship".into(), "fx 2.5, magnitude 2.5 N, mx 2.5 N m".into())]);
         assert_eq!(finals(&[column("hose.end.x", "m")]), [("hose.end.x".into(), "2.5 m".into())]);
+        let beside = |x: f64| Column { values: vec![x], ..Column::new("end.z", "m") };
+        assert_eq!(finals(&[column("end.x", "m"), beside(-2e-16)]), [("end".into(), "x 2.5, z 0 m".into())]);
+        assert_eq!(
+            finals(&[column("end.x", "m"), beside(2e-13)]),
+            [("end".into(), "x 2.5, z 2e-13 m".into())]
+        );
         let apart = [column("drag.cd", ""), column("lift", "N")];
         assert_eq!(finals(&apart), [("drag.cd".into(), "2.5".into()), ("lift".into(), "2.5 N".into())]);
     }
