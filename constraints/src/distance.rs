@@ -51,6 +51,7 @@ impl ConstraintSpec for DistanceSpec {
         let markers = [b.marker("to", &self.to)?, b.marker("marker", &self.marker)?];
         let [x, y] = markers.map(|m| b.place(&m).x);
         let start = (0..3).map(|i| (y[i] - x[i]).powi(2)).sum::<f64>().sqrt();
+        b.reaches(start);
         let joint = distance(&self.name, b.nodes(), markers, self.length.unwrap_or(start))?;
         b.constraint(joint)
     }

@@ -220,6 +220,7 @@ impl ForceSpec for SpringSpec {
         let ends = [b.marker("marker", &self.marker)?, b.marker("to", &self.to)?];
         let [a, c] = [b.place(&ends[0]).x, b.place(&ends[1]).x];
         let start = (0..3).map(|i| (c[i] - a[i]).powi(2)).sum::<f64>().sqrt();
+        b.reaches(start);
         let length = match &self.length {
             Some(length) => b.signal("length", length, &kind::LENGTH)?,
             None => Signal::Constant(start),

@@ -73,6 +73,7 @@ pub struct Builder {
     statics: bool,
     switches: Switches,
     length: f64,
+    reach: f64,
 }
 
 impl Builder {
@@ -219,10 +220,18 @@ impl Builder {
         })
     }
 
-    /// The longest part so far, or the size of the mechanism that rigid bodies make [m].
+    /// Says that what is joined to nodes reaches so far [m]: of point masses nothing else has a length.
+    pub fn reaches(&mut self, length: f64) {
+        self.reach = self.reach.max(length);
+    }
+
+    /// The longest part so far, or the size of the mechanism that rigid bodies make; of point masses alone how far apart they are, and
+    /// what reaches from them elsewhere [m].
     pub fn size(&self) -> f64 {
-        let mut length = self.length;
-        if self.nodes.iter().any(|n| n.kind == NodeKind::Frame) {
+        let bodies = self.nodes.iter().any(|n| n.kind == NodeKind::Frame);
+        let lone = !(bodies || self.length > 0.0);
+        let mut length = if lone { self.reach } else { self.length };
+        if lone || bodies {
             let place = |n: &Node, i: usize| self.start.q[n.q + i];
             let points = || self.nodes.iter().filter(|n| n.kind.has_position());
             let square: f64 = (0..3)

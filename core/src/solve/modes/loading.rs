@@ -14,18 +14,19 @@ const MOST: f64 = 1e4;
 /// The first step of the factor, and steps at most.
 const FIRST: f64 = 0.1;
 const MOST_STEPS: usize = 400;
-/// How far a step may go, and how far from there it may end, in lengths of the model and radians: what ends farther off
-/// has leapt onto another path.
+/// How far a step may go, in lengths of the model and radians; and how far from where its tangent leads it may end, in parts of
+/// its way and besides: what ends farther off has leapt onto another path.
 const LONG: f64 = 0.1;
-const ASTRAY: f64 = 0.05;
+const ASTRAY: [f64; 2] = [0.5, 1e-5];
 /// Corrections by Newton's method at most, those of a step that may grow, and the size of the last one.
 const MOST_CORRECTIONS: usize = 15;
 const EASY: usize = 4;
 const CLOSED: f64 = 1e-7;
 /// How closely the factor is found.
 const CLOSE: f64 = 1e-7;
-/// What is left at most of the stiffness that goes, where the path ends at a limit of its loads.
-const GONE: f64 = 0.1;
+/// At a limit of its loads a path goes on ever faster: so many times as fast there as where steps were of this size.
+const FASTER: f64 = 10.0;
+const SMALL: f64 = 1e-3;
 /// Inverse iterations for a shape.
 const ITERATIONS: usize = 6;
 
@@ -56,18 +57,32 @@ pub(super) struct Followed {
 }
 
 impl Loading<'_, '_> {
-    /// Follows the path up to where a direction is lost; of an unstable equilibrium down, to where none is lost yet.
-    /// `None` where the solver can't count them.
-    pub fn follow(&mut self, state: &State) -> Result<Option<Followed>, ModesError> {
-        let Some(mut start) = self.place(state.clone(), 1.0)? else { return Ok(None) };
-        let stable = start.lost == 0;
-        let mut noise = Noise::default();
-        let mut shape: Vec<f64> = (0..start.pencil.len()).map(|_| noise.draw()).collect();
-        let before = stiffness(&mut start.pencil, &mut shape)?;
-        let (mut here, behind, counted) = self.walk(start, stable)?;
-        let Some(mut behind) = behind else {
-            return Ok(Some(Followed { lost: None, safe: here.factor }));
+    /// Follows the path of a stable equilibrium up to where a direction is lost; of an unstable one down, to where none is lost
+    /// yet. `None` where the solver can't count them.
+    pub fn follow(&mut self, state: &State, stable: bool) -> Result<Option<Followed>, ModesError> {
+        let Some(start) = self.place(state.clone(), 1.0).filter(|start| (start.lost == 0) == stable) else {
+            return Ok(None);
         };
+        let (mut here, behind, counted) = self.walk(start, stable)?;
+        let Some(behind) = behind else { return Ok(Some(Followed { lost: None, safe: here.factor })) };
+        let mut noise = Noise::default();
+        let mut shape: Vec<f64> = (0..here.pencil.len()).map(|_| noise.draw()).collect();
+        let mut at = here.factor;
+        if counted {
+            let before = (here.state.clone(), here.factor);
+            here = self.between(here, behind, stable)?;
+            at = self.unshifted(before, here.factor, behind, stable)?.unwrap_or(here.factor);
+        } else {
+            // it goes the way that the loads push it
+            shape = here.pencil.towards(&self.statics.loads(&here.state).0).map_err(ModesError::Solver)?;
+        }
+        stiffness(&mut here.pencil, &mut shape)?;
+        let lost = (at > 1.0 / MOST).then_some((at, shape));
+        Ok(Some(Followed { lost, safe: at.max(1.0 / MOST) }))
+    }
+
+    /// The last place before a direction is lost or won.
+    fn between(&mut self, mut here: Place, mut behind: f64, stable: bool) -> Result<Place, ModesError> {
         while (behind - here.factor).abs() > CLOSE * here.factor {
             let middle = 0.5 * (here.factor + behind);
             match self.step(&mut here, middle)? {
@@ -75,17 +90,36 @@ impl Loading<'_, '_> {
                 _ => behind = middle,
             }
         }
-        let after = stiffness(&mut here.pencil, &mut shape)?;
-        // a path may also end where Newton's method does
-        let gone = counted || after.abs() < GONE * before.abs();
-        let lost = gone.then_some((here.factor, shape));
-        Ok(Some(Followed { lost, safe: here.factor }))
+        Ok(here)
     }
 
-    /// Steps along the path until the count changes or it goes no farther: the last place before, the factor behind it,
-    /// and whether that one was counted.
+    /// The factor at which the direction is lost but for the mass that holds what moves freely: with a quarter of it it's lost
+    /// nearer by, and its stiffness changes evenly.
+    fn unshifted(
+        &mut self,
+        (state, factor): (State, f64),
+        found: f64,
+        behind: f64,
+        stable: bool,
+    ) -> Result<Option<f64>, ModesError> {
+        if self.shift == 0.0 {
+            return Ok(None);
+        }
+        let shift = self.shift;
+        self.shift *= 0.25;
+        let nearer = match self.place(state, factor) {
+            Some(here) if (here.lost == 0) == stable => Some(self.between(here, behind, stable)?.factor),
+            _ => None,
+        };
+        self.shift = shift;
+        Ok(nearer.map(|nearer| nearer - (found - nearer) / 3.0))
+    }
+
+    /// Steps along the path until the count changes or it goes no farther: the last place before, the factor behind it, and
+    /// whether that was counted.
     fn walk(&mut self, start: Place, stable: bool) -> Result<(Place, Option<f64>, bool), ModesError> {
         let (end, mut here, mut step) = (if stable { MOST } else { 1.0 / MOST }, start, FIRST);
+        let mut pace: Option<f64> = None;
         for _ in 0..MOST_STEPS {
             let left: f64 = end - here.factor;
             if left == 0.0 {
@@ -97,33 +131,54 @@ impl Loading<'_, '_> {
                 Some((there, easy)) => {
                     here = there;
                     step = if easy { 2.0 * step } else { step };
+                    if step > SMALL * here.factor {
+                        pace = None;
+                    }
                 }
-                None if step <= CLOSE * here.factor => return Ok((here, Some(to), false)),
-                None => step *= 0.5,
+                None => {
+                    if step <= SMALL * here.factor {
+                        let now = size(self.model, &self.direction(&mut here)?[..self.model.velocities()]);
+                        let before = *pace.get_or_insert(now);
+                        if step <= CLOSE * here.factor {
+                            // it may also end where Newton's method does
+                            let limit = (now > FASTER * before).then_some(to);
+                            return Ok((here, limit, false));
+                        }
+                    }
+                    step *= 0.5;
+                }
             }
         }
         Ok((here, None, false))
     }
 
+    /// Where the path goes from a place, per factor.
+    fn direction(&mut self, from: &mut Place) -> Result<Vec<f64>, ModesError> {
+        let (force, _) = self.statics.loads(&from.state);
+        from.pencil.answer(&force).map_err(ModesError::Solver)
+    }
+
     /// The equilibrium at another factor of the loads, and whether it was easy to find; `None` where it leads too far, and
     /// where there is none.
     fn step(&mut self, from: &mut Place, to: f64) -> Result<Option<(Place, bool)>, ModesError> {
-        let (force, _) = self.statics.loads(&from.state);
-        let d = from.pencil.answer(&force).map_err(ModesError::Solver)?;
-        let by = to - from.factor;
-        if !(by.abs() * size(self.model, &d[..self.model.velocities()]) <= LONG) {
+        let (d, by) = (self.direction(from)?, to - from.factor);
+        let way = by.abs() * size(self.model, &d[..self.model.velocities()]);
+        if !(way <= LONG) {
             return Ok(None);
         }
         let mut state = from.state.clone();
         self.advance(&mut state, by, &d);
-        let Some(corrections) = self.close(&mut state, to, ASTRAY)? else { return Ok(None) };
-        Ok(self.place(state, to)?.map(|place| (place, corrections <= EASY)))
+        // there is none where the matrix is singular
+        let Ok(Some(corrections)) = self.close(&mut state, to, ASTRAY[0] * way + ASTRAY[1]) else {
+            return Ok(None);
+        };
+        Ok(self.place(state, to).map(|place| (place, corrections <= EASY)))
     }
 
     /// `None` where the solver doesn't know how many directions are lost.
-    fn place(&mut self, state: State, factor: f64) -> Result<Option<Place>, ModesError> {
-        let pencil = self.pencil(&state, factor)?;
-        Ok(pencil.below().map(|lost| Place { state, factor, pencil, lost }))
+    fn place(&mut self, state: State, factor: f64) -> Option<Place> {
+        let pencil = self.pencil(&state, factor).ok()?;
+        pencil.below().map(|lost| Place { state, factor, pencil, lost })
     }
 
     /// The equations under the loads times a factor, factored.

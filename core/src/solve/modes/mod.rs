@@ -29,6 +29,9 @@ use std::ops::ControlFlow;
 const ZERO: f64 = 64.0;
 /// A growth in parts of the fastest rate that is none.
 const CREEPS: f64 = 1e-6;
+const DRIFTS: f64 = 1e-7;
+/// By how many modes a state is judged at least.
+const JUDGED: usize = 12;
 
 /// Refuses a time at which a constraint moves otherwise than the frame, before an equilibrium is looked for in vain.
 ///
@@ -127,25 +130,12 @@ pub fn modes(
     refuse_moving(model, &rest)?;
     let mut pencil = Pencil::new(model, &state.internal, statics.linearise_to_judge(&rest))?;
     let mut watch = Watch(look);
-    let kinds = align::kinds(model, &pencil);
-    let mut found = if pencil.damped || !pencil.symmetric {
-        quadratic::find(&mut pencil, count, &kinds, &mut watch)?
-    } else {
-        undamped::find(&mut pencil, count, &kinds, &mut watch)?
-    };
+    let mut found = find(model, &mut pencil, count, &mut watch)?;
     if found.modes.is_empty() {
         return Err(ModesError::Held);
     }
     let all = std::mem::take(&mut found.modes);
-    let mut modes: Vec<Mode> = all.into_iter().map(|raw| finish(model, &pencil, raw)).collect();
-    // what creeps away a million times slower than others move is rounding of what is free
-    let fastest = modes.iter().map(|m| m.growth.hypot(m.omega)).fold(0.0, f64::max);
-    for mode in modes.iter_mut().filter(|m| m.omega == 0.0 && m.growth > 0.0 && m.growth <= CREEPS * fastest)
-    {
-        (mode.growth, mode.rigid) = (0.0, true);
-    }
-    // in the order found, but rigid ones first
-    modes.sort_by_key(|m| !m.rigid);
+    let modes = named(model, &pencil, all);
     // no law of inertia counts what is damped or gyroscopic, but a disturbance finds what grows
     let hidden = match pencil.damped || !pencil.symmetric {
         true if !modes.iter().any(Mode::is_unstable) => {
@@ -155,12 +145,57 @@ pub fn modes(
         _ => None,
     };
     // the modes are right though a matrix of the buckling problem be singular
-    let critical = match buckling::critical(&mut statics, model, &rest, &mut pencil, &modes) {
+    let critical = match critical(&mut statics, model, &rest, &mut pencil, &modes) {
         Err(ModesError::Solver(_) | ModesError::Eigen) => None,
         found => found?,
     };
     let Found { missing, of, .. } = found;
     Ok(Modes { modes, damped: pencil.damped, of, missing, critical, hidden })
+}
+
+/// How far the loads may grow, whatever number of modes was asked for.
+fn critical(
+    statics: &mut Statics<'_>,
+    model: &Model,
+    state: &State,
+    pencil: &mut Pencil,
+    modes: &[Mode],
+) -> Result<Option<Critical>, ModesError> {
+    if modes.len() >= JUDGED {
+        return buckling::critical(statics, model, state, pencil, modes);
+    }
+    let found = find(model, pencil, JUDGED, &mut Watch(&mut |_, _, _| ControlFlow::Continue(())))?;
+    let modes = named(model, pencil, found.modes);
+    buckling::critical(statics, model, state, pencil, &modes)
+}
+
+fn find(
+    model: &Model,
+    pencil: &mut Pencil,
+    count: usize,
+    watch: &mut Watch<'_>,
+) -> Result<Found, ModesError> {
+    let kinds = align::kinds(model, pencil);
+    if pencil.damped || !pencil.symmetric {
+        quadratic::find(pencil, count, &kinds, watch)
+    } else {
+        undamped::find(pencil, count, &kinds, watch)
+    }
+}
+
+/// Modes with their names, in the order found, but rigid ones first.
+fn named(model: &Model, pencil: &Pencil, all: Vec<outcome::Raw>) -> Vec<Mode> {
+    let mut modes: Vec<Mode> = all.into_iter().map(|raw| finish(model, pencil, raw)).collect();
+    // what creeps away a million times slower than others move is rounding of what is free
+    let fastest = modes.iter().map(|m| m.growth.hypot(m.omega)).fold(0.0, f64::max);
+    let creeps = |m: &Mode| m.omega == 0.0 && m.growth > 0.0 && m.growth <= CREEPS * fastest;
+    // so is what swings ten million times slower
+    let drifts = |m: &Mode| m.growth == 0.0 && m.omega <= DRIFTS * fastest;
+    for mode in modes.iter_mut().filter(|m| creeps(m) || drifts(m)) {
+        (mode.growth, mode.omega, mode.rigid) = (0.0, 0.0, true);
+    }
+    modes.sort_by_key(|m| !m.rigid);
+    modes
 }
 
 /// The `count` modes of smallest `|λ|` of equations that are linearised already, whether a state may vibrate or not.

@@ -147,6 +147,16 @@ impl Pencil {
         Ok(l.structure.position.iter().map(|&p| x[p]).collect())
     }
 
+    /// The direction in which a residual pushes, with the factored matrix, in elimination order.
+    pub fn towards(&mut self, residual: &[f64]) -> Result<Vec<f64>, SolveError> {
+        let mut x = vec![0.0; self.len()];
+        for (residual, &p) in residual.iter().zip(&self.linear.structure.position) {
+            x[p] = *residual;
+        }
+        self.solve(&mut x)?;
+        Ok(x)
+    }
+
     /// Number of eigenvalues `ω²` below `-m` where the factored matrix is `K + m M`, by Sylvester's law of inertia;
     /// `None` where the solver doesn't know.
     pub fn below(&self) -> Option<usize> {
