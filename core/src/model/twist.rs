@@ -10,6 +10,7 @@
 
 use crate::algebra::lane::{V3, dot};
 use crate::algebra::rotation::{M3, cross};
+use std::f64::consts::TAU;
 
 /// Coordinates and velocities of the node.
 pub const COORDINATES: usize = 10;
@@ -22,6 +23,8 @@ pub const PREFIX: usize = 6;
 const LEAST: f64 = 0.1;
 /// Angle between neighbouring reference directors from which on a line is relabelled [rad].
 const RELABEL: f64 = 0.5;
+/// Angle of a first node from which on whole turns are taken out [rad].
+const MOST_SPUN: f64 = 2.0 * TAU;
 /// Most by which that angle may change from one accepted state to the next [rad]: a jump by a whole turn is more.
 const MOST_CHANGE: f64 = 2.0;
 /// What `1 + t₁·t₂` of the tangents of an element must not fall below, nor `1 + t₁·D + D·t₂ + t₁·t₂` with its chord `D`: where
@@ -186,8 +189,19 @@ pub fn folds(q: [&[f64]; 2]) -> bool {
 
 /// Turns the reference directors of a line of nodes, at these places in the coordinates, such that each is that of the
 /// one before carried along, and their angles back: the sections stay. Only where two neighbours are apart by more than
-/// half a radian, before the angle between them can leave (-π, π]; returns whether anything was to be done.
+/// half a radian, before the angle between them can leave (-π, π]; and where the first has turned round several times, those turns
+/// are taken out of all angles, so that rounding doesn't grow with them. Returns whether anything was to be done.
 pub fn relabel(q: &mut [f64], line: &[usize]) -> bool {
+    let first = q[line[0] + 9];
+    let spun = first.abs() > MOST_SPUN;
+    if spun {
+        let turns = TAU * (first / TAU).round();
+        line.iter().for_each(|k| q[k + 9] -= turns);
+    }
+    lay_anew(q, line) || spun
+}
+
+fn lay_anew(q: &mut [f64], line: &[usize]) -> bool {
     let reference = |q: &[f64], k: usize| (tangent(&q[k..]), three(q, k + 6));
     let apart = |q: &[f64], a: usize, b: usize| {
         let ((t1, u1), (t2, u2)) = (reference(q, a), reference(q, b));
@@ -427,6 +441,21 @@ mod tests {
             assert!((twist(&q, k) - 0.7).abs() < 1e-13, "{k}: {}", twist(&q, k));
         }
         assert!((q[199] - 0.7 * 19.0).abs() < 1e-12, "{}", q[199]);
+    }
+
+    /// A shaft that has spun for long counts from anew: its sections stay, and so does its twist.
+    #[test]
+    fn turns_of_a_whole_line_are_taken_out() {
+        let node = |k: f64| laid(&[k, 0.0, 0.0], &[1.0, 0.0, 0.0], &[0.0, 1.0, 0.0], 200.0 + 0.3 * k);
+        let mut q: Vec<f64> = (0..5).flat_map(|k| node(f64::from(k))).collect();
+        let (before, line) = (q.clone(), [0, 10, 20, 30, 40]);
+        assert!(relabel(&mut q, &line) && q[9].abs() < 3.2);
+        for k in line {
+            let (a, b) = (section(&before[k..]), section(&q[k..]));
+            assert!(a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() < 1e-13));
+        }
+        assert!(line.windows(2).all(|w| (q[w[1] + 9] - q[w[0] + 9] - 0.3).abs() < 1e-13));
+        assert!(!relabel(&mut q, &line));
     }
 
     #[test]
