@@ -19,6 +19,9 @@ pub(crate) struct Linear {
     pub mass: Vec<f64>,
 }
 
+/// How much stiffer than all else constraints are braced in equations whose falling directions are counted.
+const STIFFER: f64 = 1.25;
+
 impl Statics<'_> {
     /// Linearises at a state, with the velocities and accelerations of the frame.
     pub(crate) fn linearise(&mut self, state: &State) -> Linear {
@@ -33,7 +36,7 @@ impl Statics<'_> {
     fn linearise_as(&mut self, state: &State, relaxed: Option<Relaxed<'_>>) -> Linear {
         self.assemble(state, &state.q, &state.lambda, relaxed, true);
         let stiffness = self.system.values.clone();
-        self.brace();
+        self.brace_by(STIFFER);
         Linear {
             structure: self.structure.clone(),
             stiffness,

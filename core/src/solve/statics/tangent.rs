@@ -130,14 +130,19 @@ impl Statics<'_> {
     /// Adds `ρ GᵀG` to the stiffness and `ρ Gᵀ g` to the residual. The solution is the same, and no node is left
     /// without stiffness before its constraint is reached in the elimination.
     pub(super) fn brace(&mut self) {
+        self.brace_by(1.0);
+    }
+
+    /// The same, so many times as stiff as what is stiffest: one that is as stiff cancels what falls over.
+    pub(super) fn brace_by(&mut self, times: f64) {
         if self.model.multipliers() > 0 {
-            self.model.add_brace(&self.structure, self.stiffest(), &mut self.system);
+            let stiffness = self.stiffest().map(|x| times * x);
+            self.model.add_brace(&self.structure, stiffness, &mut self.system);
         }
     }
 
-    /// What outweighs the assembled stiffness, of positions and of what has no length: more than its largest diagonal entry, as
-    /// one that is negative must not be cancelled; where there are none before constraints have their forces, that of the
-    /// load over its reference length.
+    /// Largest diagonal entries of the assembled stiffness, of positions and of what has no length; where there are none before
+    /// constraints have their forces, that of the load over its reference length.
     pub(super) fn stiffest(&self) -> [f64; 2] {
         let s = &self.structure;
         let mut largest = [0.0_f64; 2];
@@ -155,7 +160,7 @@ impl Statics<'_> {
         if !(largest[1] > 0.0) {
             largest[1] = largest[0] * length.powi(2);
         }
-        largest.map(|x| 1.1 * x)
+        largest
     }
 
     /// Velocities and accelerations of the frame at a configuration.
