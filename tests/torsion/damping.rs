@@ -2,6 +2,7 @@
 
 use super::scene;
 use ropewalk::{Modal, ModesOptions, modes};
+use std::f64::consts::PI;
 
 /// A bar of 1 m, clamped at one end, seen from a frame that turns with it at `turn` about its axis.
 fn bar(section: &str, turn: f64) -> Modal {
@@ -45,6 +46,41 @@ fn damping_inside_a_shaft_drives_it_on_beyond_its_critical_speed() {
             assert!((mode.growth / exact - 1.0).abs() < 1e-3, "{turn}: {} {exact}", mode.growth);
         }
         assert!(!found.modes.is_empty());
+    }
+}
+
+/// A shaft of which both ends turn freely spins as it likes, which is no instability though hardly anything has that inertia.
+#[test]
+fn what_spins_freely_in_a_frame_that_turns_is_not_unstable() {
+    for (turn, elements) in [(9.8, 32), (9.0, 8), (3.0, 16), (1.0, 16)] {
+        let text = format!(
+            r#"
+            gravity = [0, 0, 0]
+            run = {{ analysis = "statics", frame = {{ omega = [{turn}, 0, 0] }} }}
+            [[elements]]
+            type = "cable"
+            name = "shaft"
+            points = [[0, 0, 0], [1, 0, 0]]
+            elements = {elements}
+            normal = [0, 1, 0]
+            section = {{ mass = 1, ea = 1e6, ei = [1, 1], gj = 100, bending_retardation_time = 1e-3 }}
+            [[constraints]]
+            type = "spherical"
+            name = "a"
+            marker = "shaft.start"
+            [[constraints]]
+            type = "point_on_line"
+            name = "b"
+            marker = "shaft.end"
+            axis = [1, 0, 0]
+            "#
+        );
+        let options = ModesOptions { count: 20, ..ModesOptions::default() };
+        let found = modes(&scene(&text, &[]), &options).unwrap_or_else(|e| panic!("{e}"));
+        assert!(!found.unstable, "{turn}: {:?}", found.warnings);
+        let first = found.modes.iter().find(|m| !m.rigid).expect("it swings");
+        let exact = PI * PI - turn;
+        assert!((first.omega - exact).abs() < 2e-3, "{turn}: {} {exact}", first.omega);
     }
 }
 

@@ -207,9 +207,10 @@ fn raw(p: &mut Pencil, rate: [f64; 2], scale: f64, vector: [Vec<f64>; 2]) -> Res
     // rounding moves a double zero by its root
     let [(k_a, n_a), (k_b, n_b)] = [p.energy(&a), p.energy(&b)];
     // entries that cancel leave more than their own rounding: what would swing slower than a zero rate is free too
-    let slow = 1e-6 * scale;
-    let free = k_a.abs() + k_b.abs() <= super::ZERO * (n_a + n_b) + slow * slow;
-    let rigid = free && size(rate) <= slow;
+    let (slow, noise) = (1e-6 * scale, super::ZERO * (n_a + n_b));
+    let free = k_a.abs() + k_b.abs() <= noise + slow * slow;
+    // of what hardly has a mass, such as the spin of a cable, that root is large
+    let rigid = free && size(rate) <= slow.max(noise.sqrt().min(0.1 * scale));
 
     // what is left of the equations, as a displacement against the shape
     let (l_re, l_im) = (rate[0], rate[1]);
