@@ -1,6 +1,7 @@
 //! How far loads may grow until an equilibrium gives way, against closed forms.
 
 use crate::modes::{close, modal};
+use ropewalk::{ModesOptions, modes, simulate};
 use ropewalk_constraints::{DirectionSpec, PointOnLineSpec, SphericalSpec};
 use ropewalk_core::modes::Mode;
 use ropewalk_elements::{CableSpec, Section};
@@ -316,4 +317,61 @@ fn a_bar_on_a_spring_falls_over_at_its_weight() {
         );
         close("bar", factor(&text), stiffness / 9.0, 1e-6);
     }
+}
+
+/// An arch that is nearly flat snaps through by little, under a fiftieth of the load: a path sees that however few its steps are, at
+/// the load that linear stability about a small one leads to.
+#[test]
+fn a_path_does_not_leap_over_a_small_snap() {
+    let arch = |steps: usize, load: f64| {
+        let rise = 0.05;
+        let radius = (1.0 + rise * rise) / (2.0 * rise);
+        let end = (1.0 / radius as f64).asin();
+        let at = |i: i32| end * f64::from(i) / 12.0;
+        let curve: Vec<[f64; 3]> =
+            (-12..=12).map(|i| [radius * at(i).sin(), 0.0, radius * (at(i).cos() - end.cos())]).collect();
+        let (along, up) = (end.cos(), end.sin());
+        let mut text = format!(
+            r#"
+            run = {{ analysis = "statics", duration = 1 }}
+            statics = {{ steps = {steps} }}
+            gravity = [0, 0, 0]
+            [[elements]]
+            type = "cable"
+            name = "arch"
+            curve = {curve:?}
+            start_direction = [{along}, 0, {up}]
+            end_direction = [{along}, 0, -{up}]
+            elements = 24
+            stress_free = "as-laid"
+            section = {{ mass = 1, ea = 1e6, ei = [1, 100], gj = 100 }}
+            normal = [0, 1, 0]
+            [[forces]]
+            type = "point_force"
+            marker = "arch@50%"
+            force = [0, 0, -{load}]
+            time = {{ table = {{ t = [0, 1], value = [0, 1] }} }}
+            "#
+        );
+        for end in ["start", "end"] {
+            let hinge = "type = \"revolute\"\naxis = [0, 1, 0]";
+            writeln!(text, "[[constraints]]\n{hinge}\nname = \"{end}\"\nmarker = \"arch.{end}\"")
+                .expect("text");
+        }
+        text
+    };
+    let parse =
+        |text: &str| SceneFile::parse(text, "arch", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let mut critical = None;
+    for steps in [2, 3, 10, 40] {
+        let h = simulate(parse(&arch(steps, 60.0)).scene()).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(h.critical.len(), 1, "{steps} steps: {:?}", h.critical);
+        let load = 60.0 * h.critical[0].load_factor;
+        close("snap", load, *critical.get_or_insert(load), 1e-5);
+    }
+    // as `modes` has it
+    let options = ModesOptions { time: Some(1.0), ..ModesOptions::default() };
+    let found = modes(parse(&arch(1, 0.5)).scene(), &options).unwrap_or_else(|e| panic!("{e}"));
+    let factor = found.critical.and_then(|c| c.factor).expect("it snaps");
+    close("by modes", 0.5 * factor, critical.expect("found"), 1e-4);
 }

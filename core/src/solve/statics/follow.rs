@@ -212,8 +212,14 @@ impl Statics<'_> {
                     self.swung = false;
                     if self.judged.flutter > 0.0 && !swings {
                         let _ = self.locate_by_load(&before, state, &mut sum);
-                    } else if self.leapt(&before, state) {
-                        self.go_round(&before, state, &mut sum)?;
+                    } else if self.leapt(&before, state)
+                        && !self.go_round(&before, state, &mut sum)?
+                        && h.abs() > 16.0 * least
+                    {
+                        // nearer by the way may be seen
+                        state.clone_from(&before);
+                        h *= 0.5;
+                        continue;
                     }
                     self.model.settle(state);
                     h *= 2.0;

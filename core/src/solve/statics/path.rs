@@ -28,8 +28,10 @@ const ITERATIONS: u32 = 10;
 const STEPS: u32 = 5000;
 /// Mean move of a step of the load from which on its tangents are compared, relative to the reference length; and the part
 /// of it that they may leave unexplained.
-const FAR: f64 = 0.05;
+const FAR: f64 = 0.01;
 const UNEXPLAINED: f64 = 0.5;
+/// Longest step on the way that was leapt over, in parts of the leap.
+const LEAP_SHARE: f64 = 0.5;
 
 /// Step from which on another path may be what bends this one; most directions in which others may branch off at once.
 const BRANCHES: f64 = 1e-5;
@@ -52,6 +54,12 @@ pub(super) struct Way {
     pub sign: f64,
 }
 
+impl Way {
+    fn to(end: f64, from: f64, span: f64) -> Self {
+        Way { end, span: span.max(f64::MIN_POSITIVE), sign: (end - from).signum() }
+    }
+}
+
 impl Statics<'_> {
     /// Follows the path from the stable equilibrium in `state` to time `end`, or to the stable path behind the first
     /// critical load.
@@ -64,17 +72,25 @@ impl Statics<'_> {
         end: f64,
         found: &mut Found,
     ) -> Result<(), StaticsError> {
-        let way = Way {
-            end,
-            span: self.span.max((end - state.t).abs()).max(f64::MIN_POSITIVE),
-            sign: (end - state.t).signum(),
-        };
+        let span = self.span.max((end - state.t).abs());
+        self.trace_by(state, Way::to(end, state.t, span), LONGEST, found)
+    }
+
+    /// The same by steps of this size at most.
+    fn trace_by(
+        &mut self,
+        state: &mut State,
+        way: Way,
+        longest: f64,
+        found: &mut Found,
+    ) -> Result<(), StaticsError> {
+        let end = way.end;
         let lost = |s: &mut Self, state: &State, why: &str| s.fail(state, why, found.iterations);
         let mut here = match self.point(state.clone(), None, way) {
             Ok(p) => p,
             Err(e) => return Err(lost(self, state, &e.to_string())),
         };
-        let mut ds = FIRST.min((end - state.t).abs() / way.span);
+        let mut ds = FIRST.min(longest).min((end - state.t).abs() / way.span);
         let mut branches = Branches { before: self.free.len(), held: 0 };
         for _ in 0..STEPS {
             if self.is_over() {
@@ -131,7 +147,7 @@ impl Statics<'_> {
             }
             here = next;
             ds = match iterations {
-                0..=3 => (1.5 * ds).min(LONGEST),
+                0..=3 => (1.5 * ds).min(longest),
                 4..=5 => ds,
                 _ => 0.6 * ds,
             };
@@ -212,7 +228,7 @@ impl Statics<'_> {
             return false;
         }
         let dt = to.t - from.t;
-        let way = Way { end: to.t, span: self.span.max(dt.abs()), sign: dt.signum() };
+        let way = Way::to(to.t, from.t, self.span.max(dt.abs()));
         // where the step before ended, its tangent is known
         let known = self.tangent.take().filter(|p| p.state == *from);
         let Some(start) = known.or_else(|| self.point(from.clone(), None, way).ok()) else { return true };
@@ -226,25 +242,31 @@ impl Statics<'_> {
         !(left <= UNEXPLAINED * size)
     }
 
-    /// Goes the way that a step of the load may have leapt over; where the arc can't be followed the step stands.
+    /// Goes the way that a step of the load may have leapt over; `false` if the arc can't be followed: the step stands.
     pub(super) fn go_round(
         &mut self,
         from: &State,
         state: &mut State,
         found: &mut Found,
-    ) -> Result<(), StaticsError> {
+    ) -> Result<bool, StaticsError> {
         let (known, mut there) = (self.critical.len(), from.clone());
         let (unstable, neutral, doubt) = (self.unstable, self.neutral.clone(), self.doubt.clone());
         let (judged, free) = (self.judged.clone(), self.free.clone());
-        match self.trace(&mut there, state.t, found) {
-            Ok(()) => *state = there,
+        // what was leapt over may be small, both in load and in size
+        let way = Way::to(state.t, from.t, (state.t - from.t).abs());
+        let longest = (LEAP_SHARE * self.distance(&from.q, &state.q)).min(LONGEST);
+        match self.trace_by(&mut there, way, longest, found) {
+            Ok(()) => {
+                *state = there;
+                return Ok(true);
+            }
             Err(e) if self.critical.len() > known => return Err(e),
             Err(_) => {
                 (self.unstable, self.neutral, self.doubt) = (unstable, neutral, doubt);
                 (self.judged, self.free) = (judged, free);
             }
         }
-        Ok(())
+        Ok(false)
     }
 
     /// The tangent of the path at an equilibrium, in the direction of `before`, or else of the way.
