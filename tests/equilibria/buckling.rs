@@ -200,8 +200,8 @@ fn a_strip_tips_over_sideways_however_stiff_it_is_along() {
 /// length, also where the way from one side to the other is short.
 #[test]
 fn a_truss_gives_way_at_the_limit_of_its_load() {
-    for (unit, height) in [(1.0, 0.5), (1e-3, 0.5), (1e3, 0.5), (1.0, 0.05), (1e-3, 0.05)] {
-        let rest = (1.0 + height * height as f64).sqrt();
+    for (unit, height) in [(1.0, 0.5_f64), (1e-3, 0.5), (1e3, 0.5), (1.0, 0.05), (1e-3, 0.05)] {
+        let rest = (1.0 + height * height).sqrt();
         let held = |z: f64| 2.0 * (rest - z.hypot(1.0)) / rest * z / z.hypot(1.0);
         let limit = (1..500_000).map(|i| held(2e-6 * height * f64::from(i))).fold(0.0, f64::max);
         let load = 0.1 * limit;
@@ -325,8 +325,8 @@ fn a_bar_on_a_spring_falls_over_at_its_weight() {
 fn a_path_does_not_leap_over_a_small_snap() {
     let arch = |steps: usize, load: f64| {
         let rise = 0.05;
-        let radius = (1.0 + rise * rise) / (2.0 * rise);
-        let end = (1.0 / radius as f64).asin();
+        let radius: f64 = (1.0 + rise * rise) / (2.0 * rise);
+        let end = (1.0 / radius).asin();
         let at = |i: i32| end * f64::from(i) / 12.0;
         let curve: Vec<[f64; 3]> =
             (-12..=12).map(|i| [radius * at(i).sin(), 0.0, radius * (at(i).cos() - end.cos())]).collect();
