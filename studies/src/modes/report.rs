@@ -156,7 +156,8 @@ fn buckling(model: &Model, critical: &Critical) -> String {
             where_it_moves(model, shape)
         ),
         (.., Some(safe)) if safe >= 1.0 => {
-            format!("No critical factor of {loads}: nothing gives way up to {}", Short(safe))
+            let stuck = if safe < Critical::MOST { ", as far as its path could be followed" } else { "" };
+            format!("No critical factor of {loads}: nothing gives way up to {}{stuck}", Short(safe))
         }
         (.., Some(safe)) => {
             format!("No critical factor of {loads}: it falls over at {} of them as well", Short(safe))

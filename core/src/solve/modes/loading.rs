@@ -2,15 +2,15 @@
 //! inertia, so that none is missed and none is believed that linear equations make up.
 
 use super::krylov::dot;
-use super::outcome::ModesError;
+use super::outcome::{Critical, ModesError};
 use super::pencil::Pencil;
 use crate::algebra::noise::Noise;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::solve::statics::Statics;
 
-/// The largest factor that is looked at, and the inverse of the smallest.
-const MOST: f64 = 1e4;
+/// The smallest factor that is looked at.
+const LEAST: f64 = 1.0 / Critical::MOST;
 /// The first step of the factor, and steps at most.
 const FIRST: f64 = 0.1;
 const MOST_STEPS: usize = 400;
@@ -77,8 +77,8 @@ impl Loading<'_, '_> {
             shape = here.pencil.towards(&self.statics.loads(&here.state).0).map_err(ModesError::Solver)?;
         }
         stiffness(&mut here.pencil, &mut shape)?;
-        let lost = (at > 1.0 / MOST).then_some((at, shape));
-        Ok(Some(Followed { lost, safe: at.max(1.0 / MOST) }))
+        let lost = (at > LEAST).then_some((at, shape));
+        Ok(Some(Followed { lost, safe: at.max(LEAST) }))
     }
 
     /// The last place before a direction is lost or won.
@@ -118,7 +118,7 @@ impl Loading<'_, '_> {
     /// Steps along the path until the count changes or it goes no farther: the last place before, the factor behind it, and
     /// whether that was counted.
     fn walk(&mut self, start: Place, stable: bool) -> Result<(Place, Option<f64>, bool), ModesError> {
-        let (end, mut here, mut step) = (if stable { MOST } else { 1.0 / MOST }, start, FIRST);
+        let (end, mut here, mut step) = (if stable { Critical::MOST } else { LEAST }, start, FIRST);
         let mut pace: Option<f64> = None;
         for _ in 0..MOST_STEPS {
             let left: f64 = end - here.factor;

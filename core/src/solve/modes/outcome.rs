@@ -145,13 +145,18 @@ pub struct Critical {
     /// The loads that grow together, by label.
     pub loads: Vec<String>,
     /// The smallest positive factor at which an equilibrium is lost that is there before; of an unstable equilibrium the
-    /// one, below 1, from which on it is unstable. `None` if there is none below 10⁴.
+    /// one, below 1, from which on it is unstable. `None` if there is none below [`Critical::MOST`].
     pub factor: Option<f64>,
     /// The direction in which it tips over, as a mode without a rate.
     pub shape: Option<Mode>,
     /// The factor up to which the path of equilibria is known; `None` where it wasn't followed, as falling directions can't
     /// be counted in matrices that aren't symmetric: the factor is that of linear buckling then.
     pub safe: Option<f64>,
+}
+
+impl Critical {
+    /// The largest factor that is looked for; its inverse is the smallest.
+    pub const MOST: f64 = 1e4;
 }
 
 /// Along which of [`Mode::directions`] a component of a node moves.
