@@ -9,7 +9,9 @@ mod program;
 
 mod buckling;
 mod flow;
+mod flutter;
 mod modes;
+mod neutral;
 mod paths;
 mod stability;
 mod statics;

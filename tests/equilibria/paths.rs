@@ -1,5 +1,4 @@
-//! Which equilibrium a path of loads leads to: buckling, limit points, loads without potential, free directions, guesses
-//! that are far off.
+//! Which equilibrium a path of loads leads to: buckling, limit points, guesses that are far off.
 
 use crate::common::{data, number, size};
 use ropewalk::scene::Format;
@@ -9,21 +8,21 @@ use ropewalk_core::V3;
 use ropewalk_core::statics::{CriticalKind, Statics, StaticsOptions};
 
 /// Runs a scene with other parameters.
-fn run(text: &str, set: &[String]) -> Result<History, Error> {
+pub(crate) fn run(text: &str, set: &[String]) -> Result<History, Error> {
     let file = SceneFile::parse(text, "test", Format::Toml, set).unwrap_or_else(|e| panic!("{e}"));
     simulate(file.scene())
 }
 
-fn set(all: &[(&str, f64)]) -> Vec<String> {
+pub(crate) fn set(all: &[(&str, f64)]) -> Vec<String> {
     all.iter().map(|(name, value)| format!("{name}={value:e}")).collect()
 }
 
-fn tip(h: &History, part: &str) -> [f64; 3] {
+pub(crate) fn tip(h: &History, part: &str) -> [f64; 3] {
     ["x", "y", "z"].map(|c| h.last(&format!("{part}.end.{c}")).expect("recorded"))
 }
 
 /// A round column of EI = 1 and length 1, clamped at its foot. `MORE` holds further loads.
-const COLUMN: &str = r#"
+pub(crate) const COLUMN: &str = r#"
 [parameters]
 load = -2.4
 side = 0.0
@@ -304,123 +303,6 @@ fn the_truss_of_von_mises_snaps_through_at_its_limit_load() {
     }
 }
 
-#[test]
-fn becks_column_flutters_and_does_not_diverge() {
-    let load = "[[forces]]\ntype = \"point_force\"\nmarker = \"column.end\"\nfollower = \"$load\"\n\
-                time = { table = { t = [0, 1], value = [0, 1] } }\n";
-    for (p, flutters) in [(10.0, false), (19.9, false), (20.2, true)] {
-        let h = run(&format!("{COLUMN}{load}"), &set(&[("load", -p)])).unwrap_or_else(|e| panic!("{e}"));
-        println!("{p}: {:?} {:?}", h.warnings, h.critical);
-        assert_eq!(h.warnings.iter().any(|w| w.contains("flutter")), flutters, "{p}: {:?}", h.warnings);
-        let [x, y, z] = tip(&h, "column");
-        assert!(x.hypot(y) < 1e-6 && (z - 1.0).abs() < 1e-4, "{p}: {x} {y} {z}");
-        assert!(h.critical.is_empty() || flutters, "{p}: {:?}", h.critical);
-    }
-}
-
-/// A bar on a hinge in a turning frame: its azimuth is free.
-const HINGED: &str = r#"
-[run]
-analysis = "statics"
-frame = { omega = [0, 0, 6] }
-[[elements]]
-type = "cable"
-name = "bar"
-points = [[0, 0, 0], [10, 0, 0]]
-elements = 16
-section = { mass = 1.2, ea = 2.8e7, ei = 1.4e4 }
-[[constraints]]
-type = "spherical"
-name = "hinge"
-marker = "bar.start"
-[[records]]
-type = "position"
-of = "bar.end"
-"#;
-
-#[test]
-fn a_free_azimuth_is_named_and_no_obstacle() {
-    let h = run(HINGED, &[]).unwrap_or_else(|e| panic!("{e}"));
-    println!("{:?}", h.warnings);
-    // stretched by its own centrifugal force: ε(s) = m ω² (L² - s²)/2 EA, to first order
-    let [x, y, z] = tip(&h, "bar");
-    let stretch = 1.2 * 36.0 * 1e3 / 3.0 / 2.8e7;
-    assert!((x.hypot(y) - 10.0 - stretch).abs() < 1e-2 * stretch && z.abs() < 1e-9, "{x} {y} {z}");
-    assert_eq!(h.warnings.len(), 1, "{:?}", h.warnings);
-    assert!(
-        h.warnings[0].contains("`bar` turns about the axis (0, 0, 1) through (0, 0, 0) m"),
-        "{:?}",
-        h.warnings
-    );
-}
-
-/// Two cables joined by a small body that may spin about them.
-const SPINNING: &str = r#"
-[run]
-analysis = "statics"
-[[elements]]
-type = "cable"
-name = "a"
-points = [[0, 0, 0], [1, 0, 0]]
-elements = 8
-section = { mass = 1, ea = 1e5, ei = 10 }
-[[elements]]
-type = "cable"
-name = "b"
-points = [[1, 0, 0], [2, 0, 0]]
-elements = 8
-section = { mass = 1, ea = 1e5, ei = 10 }
-[[elements]]
-type = "rigid_body"
-name = "j"
-position = [1, 0, 0]
-mass = 1e-6
-inertia = [1e-9, 1e-9, 1e-9]
-[[constraints]]
-type = "spherical"
-name = "p"
-marker = "a.start"
-[[constraints]]
-type = "direction"
-name = "c"
-marker = "a.start"
-[[constraints]]
-type = "weld"
-name = "k1"
-marker = "a.end"
-to = "j"
-[[constraints]]
-type = "weld"
-name = "k3"
-marker = "b.start"
-to = "j"
-[[forces]]
-type = "gravity"
-[[records]]
-type = "position"
-of = "b.end"
-"#;
-
-#[test]
-fn a_free_spin_is_named_and_no_obstacle() {
-    let h = run(SPINNING, &[]).unwrap_or_else(|e| panic!("{e}"));
-    println!("{:?} {:?}", tip(&h, "b"), h.warnings);
-    assert_eq!(h.warnings.len(), 1, "{:?}", h.warnings);
-    assert!(h.warnings[0].contains("`j` turns about the axis"), "{:?}", h.warnings);
-    // without the body between them: one cable of 2 m
-    let one = SPINNING.split("[[elements]]").collect::<Vec<_>>();
-    let constraints = one[3].split("[[constraints]]").collect::<Vec<_>>();
-    let whole = one[1].replace("[1, 0, 0]]", "[2, 0, 0]]").replace("elements = 8", "elements = 16");
-    let scene = format!(
-        "{}[[elements]]{whole}[[constraints]]{}[[constraints]]{}[[forces]]\ntype = \"gravity\"\n[[records]]\ntype = \"position\"\nof = \"a.end\"\n",
-        one[0], constraints[1], constraints[2]
-    );
-    let other = run(&scene, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let (joined, whole) = (tip(&h, "b"), tip(&other, "a"));
-    let off = (0..3).map(|i| (joined[i] - whole[i]).powi(2)).sum::<f64>().sqrt();
-    assert!(off < 1e-3, "{joined:?} {whole:?}");
-}
-
 /// A chain on a flat floor, laid straight from the anchor to the fairlead.
 const LAID: &str = r#"
 [parameters]
@@ -495,130 +377,6 @@ fn a_chain_on_the_floor_is_found_from_a_straight_line() {
     }
 }
 
-/// A rod between guides that hold its ends straight, in tension, whose torque grows: it diverges in two directions at once, which
-/// rounding makes pairs of complex eigenvalues of. With `x = e^{ikz}` in the plane across, `EI x'''' - i M x''' - T x'' = 0` has
-/// solutions that are clamped at both ends at M = 9.718 N m.
-#[test]
-fn torque_makes_a_rod_diverge_and_not_flutter() {
-    for steps in [13, 20, 21] {
-        let text = format!(
-            r#"
-            gravity = [0, 0, 0]
-            run = {{ analysis = "statics", duration = 1 }}
-            statics = {{ steps = {steps} }}
-            [[elements]]
-            type = "cable"
-            name = "c"
-            points = [[0, 0, 0], [1, 0, 0]]
-            elements = 24
-            section = {{ mass = 1, ea = 1e6, ei = 1, gj = 0.8 }}
-            [[constraints]]
-            type = "clamp"
-            name = "s"
-            marker = "c.start"
-            [[constraints]]
-            type = "point_on_line"
-            name = "g"
-            marker = "c.end"
-            axis = [1, 0, 0]
-            [[constraints]]
-            type = "direction"
-            name = "d"
-            marker = "c.end"
-            twist = false
-            [[forces]]
-            type = "point_force"
-            marker = "c.end"
-            force = [5, 0, 0]
-            [[forces]]
-            type = "point_moment"
-            marker = "c.end"
-            torque = 10.5
-            time = {{ table = {{ t = [0, 1], value = [0, 1] }} }}
-            "#
-        );
-        // behind it the rod jumps into a loop
-        let e = run(&text, &[]).err().expect("no equilibrium nearby").to_string();
-        let said = "behind a bifurcation at load factor ";
-        let at = e.split(said).nth(1).unwrap_or_else(|| panic!("{e}"));
-        let factor: f64 = at.split(',').next().unwrap_or_default().parse().unwrap_or_else(|_| panic!("{e}"));
-        assert!((10.5 * factor - guided(5.0)).abs() < 2e-3 * 9.7, "{steps} steps: {factor}, {}", guided(5.0));
-    }
-}
-
-/// The torque at which a rod of `EI = 1`, `L = 1` in tension `T` diverges between guides: `x = e^{iaz} (A cos bz + B sin bz) + C + D z`
-/// with `a = M/2`, `b² = a² - T` has none but the trivial solution until then.
-fn guided(tension: f64) -> f64 {
-    type C = [f64; 2];
-    let mul = |x: C, y: C| [x[0] * y[0] - x[1] * y[1], x[0] * y[1] + x[1] * y[0]];
-    let determinant = |torque: f64| {
-        let a = 0.5 * torque;
-        let b = (a * a - tension).sqrt();
-        // what e^{ikz} - 1 - ikz and ik (e^{ikz} - 1) are at the other end, for both k
-        let [one, two] = [a + b, a - b].map(|k: f64| {
-            let e = [k.cos() - 1.0, k.sin()];
-            ([e[0], e[1] - k], mul([0.0, k], e))
-        });
-        let (p, q) = (mul(one.0, two.1), mul(two.0, one.1));
-        // its phase is that of e^{ia}
-        let phase = [a.cos(), -a.sin()];
-        let all = mul([p[0] - q[0], p[1] - q[1]], phase);
-        if all[0].abs() > all[1].abs() { all[0] } else { all[1] }
-    };
-    let (mut low, step) = (2.0 * tension.sqrt() + 0.5, 0.05);
-    while determinant(low) * determinant(low + step) > 0.0 {
-        low += step;
-    }
-    let mut high = low + step;
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if determinant(low) * determinant(middle) > 0.0 { low = middle } else { high = middle }
-    }
-    low
-}
-
-/// A pipe between clamps that water runs through ever faster buckles once, at u = 2π, and stays on the path that branches off.
-#[test]
-fn a_pipe_with_faster_and_faster_flow_buckles_once() {
-    let text = r#"
-        gravity = [0, 0, 0]
-        run = { analysis = "statics", duration = 1 }
-        statics = { steps = 20 }
-        [[elements]]
-        type = "cable"
-        name = "c"
-        points = [[0, 0, 0], [1, 0, 0]]
-        elements = 8
-        section = { mass = 0.5, ea = 1e5, ei = 1 }
-        [[constraints]]
-        type = "clamp"
-        name = "s"
-        marker = "c.start"
-        [[constraints]]
-        type = "clamp"
-        name = "e"
-        marker = "c.end"
-        [[forces]]
-        type = "internal_flow"
-        cable = "c"
-        density = 1000
-        bore = 0.025231325220201602
-        speed = 9.899494936611665
-        time = { table = { t = [0, 1], value = [0, 1] } }
-        [[records]]
-        type = "position"
-        of = "c@50%"
-    "#;
-    let h = run(text, &[]).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(h.critical.len(), 1, "{:?}", h.critical);
-    let u = 7.0 * h.critical[0].load_factor;
-    assert!((u / std::f64::consts::TAU - 1.0).abs() < 2e-3, "{u}");
-    let [y, z] = ["c@50%.y", "c@50%.z"].map(|name| h.last(name).expect("recorded"));
-    assert!(y.hypot(z) > 5e-3, "{y} {z}");
-    // which way it bends nothing tells
-    assert!(h.warnings.iter().all(|w| w.contains("turns about the axis (1, 0, 0)")), "{:?}", h.warnings);
-}
-
 /// Lee's frame, two beams of length L at a right angle with a load at a fifth of the upper one, leads past the same limit point
 /// whatever its size: 120 km, 1.2 m, 1.2 mm.
 #[test]
@@ -689,83 +447,4 @@ fn a_frame_of_any_size_follows_the_same_path() {
             assert!((a - b).abs() < 1e-6, "{found:?}");
         }
     }
-}
-
-/// Two rods in a row under a follower load, held upright by springs of 1 N m (Ziegler): the pair that flutters becomes two motions that go
-/// one way at a higher load. Nothing branches off there, and what is told doesn't hang on the steps.
-#[test]
-fn flutter_is_told_whatever_comes_after_it() {
-    let told = [1, 5, 13].map(|steps| {
-        let rod = |name: &str, z: f64| {
-            format!(
-                r#"
-                [[elements]]
-                type = "rigid_body"
-                name = "{name}"
-                position = [0, 0, {z}]
-                mass = 1
-                inertia = [0.0833333333333333, 0.0833333333333333, 1e-3]
-                points = {{ low = [0, 0, -0.5], top = [0, 0, 0.5] }}
-                "#
-            )
-        };
-        let joint = |name: &str, marker: &str, to: &str| {
-            format!(
-                r#"
-                [[constraints]]
-                type = "revolute"
-                name = "{name}"
-                marker = "{marker}"
-                {to}
-                axis = [0, 1, 0]
-                [[forces]]
-                type = "rotational_spring"
-                name = "{name}s"
-                marker = "{marker}"
-                {to}
-                axis = [0, 1, 0]
-                stiffness = 1
-                "#
-            )
-        };
-        let text = format!(
-            r#"
-            gravity = [0, 0, 0]
-            run = {{ analysis = "statics", duration = 8 }}
-            statics = {{ steps = {steps} }}
-            {}
-            {}
-            {}
-            {}
-            [[forces]]
-            type = "point_force"
-            marker = "b.top"
-            local = true
-            force = [0, 0, -1]
-            time = {{ table = {{ t = [0, 100], value = [0, 100] }} }}
-            "#,
-            rod("a", 0.5),
-            rod("b", 1.5),
-            joint("foot", "a.low", ""),
-            joint("knee", "b.low", "to = \"a.top\"")
-        );
-        let h = run(&text, &[]).unwrap_or_else(|e| panic!("{steps} steps: {e}"));
-        let kinds: Vec<CriticalKind> = h.critical.iter().map(|c| c.kind).collect();
-        assert_eq!(kinds, [CriticalKind::Flutter], "{steps} steps: {:?}", h.critical);
-        assert!(h.warnings.iter().any(|w| w.contains("not stable")), "{steps} steps: {:?}", h.warnings);
-        h.critical[0].load_factor
-    });
-    // of uniform rods: M = [[4/3, 1/2], [1/2, 1/3]], K = [[2 - P, P - 1], [-1, 1]]; the square of the trace of M⁻¹K is four times
-    // its determinant
-    let meets = |p: f64| {
-        let det = 4.0 / 9.0 - 0.25;
-        let trace = ((2.0 - p) / 3.0 + 0.5 + 4.0 / 3.0 - (p - 1.0) / 2.0) / det;
-        trace * trace - 4.0 / det
-    };
-    let (mut low, mut high) = (0.0, 3.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if meets(middle) > 0.0 { low = middle } else { high = middle }
-    }
-    assert!(told.iter().all(|p| (p - low).abs() < 1e-4 * low), "{told:?} {low}");
 }
