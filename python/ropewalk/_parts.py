@@ -154,7 +154,9 @@ class Parts:
             axial_retardation_time: Retardation time of stretching (Kelvin–Voigt) [s]: the axial force is `EA (ε + τ
                 ε̇)`. With a table EA is its largest slope here. Default 0.0.
             bending_retardation_time: Retardation time of bending (Kelvin–Voigt) [s]: the moment is `EI (κ + τ κ̇)`,
-                with the largest slope of a table. Default 0.0.
+                with the largest slope of a table. The rate is that in axes of the section where the cable has
+                torsion, `gj`, and no end feeds, so that a bent shaft that spins is damped; else that seen along the
+                tangent. Default 0.0.
             torsional_retardation_time: Retardation time of twisting (Kelvin–Voigt) [s]: the torque is `GJ (φ' + τ
                 dφ'/dt)`.
             gyroscopic: Whether the spin of a cable with torsion about its own axis turns it aside, as that of a top
@@ -3316,7 +3318,9 @@ class Parts:
         axial_retardation_time: Retardation time of stretching (Kelvin–Voigt) [s]: the axial force is `EA (ε + τ ε̇)`.
             With a table EA is its largest slope here. Default 0.0.
         bending_retardation_time: Retardation time of bending (Kelvin–Voigt) [s]: the moment is `EI (κ + τ κ̇)`, with
-            the largest slope of a table. Default 0.0.
+            the largest slope of a table. The rate is that in axes of the section where the cable has torsion, `gj`,
+            and no end feeds, so that a bent shaft that spins is damped; else that seen along the tangent. Default
+            0.0.
         torsional_retardation_time: Retardation time of twisting (Kelvin–Voigt) [s]: the torque is `GJ (φ' + τ
             dφ'/dt)`.
         gyroscopic: Whether the spin of a cable with torsion about its own axis turns it aside, as that of a top does:

@@ -285,6 +285,18 @@ fn what_is_free_is_not_lost() {
     }
 }
 
+/// A column on few elements, very stiff along, of which nearly all modes are asked for: what is slow isn't taken for free.
+#[test]
+fn a_stiff_column_has_its_factor_whatever_is_asked_for() {
+    let mut stiff = column(0.5 * 0.25 * PI * PI, true, [false, false]);
+    stiff.elements.clear();
+    let section = Section::new(1.0, 1e9, 1.0);
+    stiff.element(CableSpec::straight("column", [0.0; 3], [0.0, 0.0, 1.0], 4, section));
+    for count in [2, 12, 20] {
+        close("column", modal(&stiff, count).critical.and_then(|c| c.factor).expect("it buckles"), 2.0, 1e-3);
+    }
+}
+
 /// What falls over by itself on its way is counted though stiffness and constraints are alike: a bar on a spring.
 #[test]
 fn a_bar_on_a_spring_falls_over_at_its_weight() {

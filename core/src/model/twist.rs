@@ -24,7 +24,7 @@ const LEAST: f64 = 0.1;
 /// Angle between neighbouring reference directors from which on a line is relabelled [rad].
 const RELABEL: f64 = 0.5;
 /// Angle of a first node from which on whole turns are taken out [rad].
-const MOST_SPUN: f64 = 2.0 * TAU;
+const MOST_SPUN: f64 = 4.0;
 /// Most by which that angle may change from one accepted state to the next [rad]: a jump by a whole turn is more.
 const MOST_CHANGE: f64 = 2.0;
 /// What `1 + t₁·t₂` of the tangents of an element must not fall below, nor `1 + t₁·D + D·t₂ + t₁·t₂` with its chord `D`: where

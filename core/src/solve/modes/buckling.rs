@@ -20,8 +20,6 @@ use crate::solve::statics::Statics;
 const HELD: f64 = 1e-2;
 const MOST_HELD: f64 = 0.1;
 const NOISE: f64 = 256.0;
-/// A rate in parts of the fastest one that may be none.
-const SLOW: f64 = 1e-5;
 /// Size of the differences by which `K'` is found, in lengths of the model and radians.
 const DIFFERENCE: f64 = 1e-3;
 /// Inverse of the largest factor, less 1, that is looked for.
@@ -78,19 +76,16 @@ pub(super) fn critical(
             .map(|t| t.label())
             .collect()
     };
-    let rate = |m: &Mode| m.growth.hypot(m.omega);
-    let slow = SLOW * modes.iter().map(rate).fold(0.0, f64::max);
-    // what is as slow as that may be free but for rounding
-    let is_free = |m: &&Mode| m.rigid || rate(m) <= slow;
-    let softest = modes.iter().filter(|m| !is_free(m)).map(rate).fold(f64::INFINITY, f64::min).powi(2);
+    let square = |m: &Mode| m.growth * m.growth + m.omega * m.omega;
+    let softest = modes.iter().filter(|m| !m.rigid).map(square).fold(f64::INFINITY, f64::min);
     if loads.is_empty() || softest.is_infinite() || force.iter().any(|r| !r.is_finite()) {
         return Ok(None);
     }
     // what moves freely is held by hardly anything, but by more than rounding, so that it isn't taken for what falls over
-    let free = modes.iter().any(|m| is_free(&m));
+    let free = modes.iter().any(|m| m.rigid);
     let noise = NOISE * f64::EPSILON * pencil.fastest;
     let shift = if free { (HELD * softest).max(noise) } else { 0.0 };
-    let mut loading = Loading { statics, model, shift };
+    let mut loading = Loading { statics, model, shift, softest };
     let stable = !modes.iter().any(Mode::is_unstable);
     let followed = if shift <= MOST_HELD * softest { loading.follow(state, stable)? } else { None };
     let (found, safe) = match followed {
@@ -103,7 +98,7 @@ pub(super) fn critical(
     let (factor, shape) = match found {
         None => (None, None),
         Some((factor, x)) => {
-            let raw = Raw { rate: [0.0; 2], rigid: false, shape: [x, Vec::new()], residual: 0.0 };
+            let raw = Raw { rate: [0.0; 2], rigid: false, shape: [x, Vec::new()], residual: 0.0, left: 1.0 };
             (Some(factor), Some(finish(model, pencil, raw)))
         }
     };

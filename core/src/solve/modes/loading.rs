@@ -27,6 +27,9 @@ const CLOSE: f64 = 1e-7;
 /// At a limit of its loads a path goes on ever faster: so many times as fast there as where steps were of this size.
 const FASTER: f64 = 10.0;
 const SMALL: f64 = 1e-3;
+/// What is left of the stiffness against a direction that is lost, in parts of the softest; and at a limit of the loads.
+const REAL: f64 = 0.05;
+const SOFT: f64 = 0.5;
 /// Inverse iterations for a shape.
 const ITERATIONS: usize = 6;
 
@@ -36,6 +39,8 @@ pub(super) struct Loading<'a, 's> {
     pub model: &'a Model,
     /// The matrix holds what moves freely by so much mass [1/s²].
     pub shift: f64,
+    /// Stiffness against what is softest but not free, where the loads are as they are, by its mass [1/s²].
+    pub softest: f64,
 }
 
 /// An equilibrium on the path.
@@ -76,8 +81,13 @@ impl Loading<'_, '_> {
             // it goes the way that the loads push it
             shape = here.pencil.towards(&self.statics.loads(&here.state).0).map_err(ModesError::Solver)?;
         }
-        stiffness(&mut here.pencil, &mut shape)?;
-        let lost = (at > LEAST).then_some((at, shape));
+        let left = stiffness(&mut here.pencil, &mut shape)?;
+        // rounding of what moves freely may change the count where no direction is at its end, and Newton's method fail
+        let real = match counted {
+            true => (left + self.shift).abs() <= REAL * self.softest,
+            false => left.abs() <= SOFT * self.softest,
+        };
+        let lost = (real && at > LEAST).then_some((at, shape));
         Ok(Some(Followed { lost, safe: at.max(LEAST) }))
     }
 
@@ -137,7 +147,9 @@ impl Loading<'_, '_> {
                 }
                 None => {
                     if step <= SMALL * here.factor {
-                        let now = size(self.model, &self.direction(&mut here)?[..self.model.velocities()]);
+                        let (force, _) = self.statics.loads(&here.state);
+                        // what is free may move as well, but loads do no work on it
+                        let now = dot(&force, &self.direction(&mut here)?).abs();
                         let before = *pace.get_or_insert(now);
                         if step <= CLOSE * here.factor {
                             // it may also end where Newton's method does

@@ -29,7 +29,9 @@ use std::ops::ControlFlow;
 const ZERO: f64 = 64.0;
 /// A growth in parts of the fastest rate that is none.
 const CREEPS: f64 = 1e-6;
-const DRIFTS: f64 = 1e-7;
+/// What is left of a stiffness that may be none, and how far such rates are from others.
+const CANCELS: f64 = 1e-11;
+const APART: f64 = 1e-5;
 /// By how many modes a state is judged at least.
 const JUDGED: usize = 12;
 
@@ -184,16 +186,21 @@ fn find(
 }
 
 /// Modes with their names, in the order found, but rigid ones first.
-fn named(model: &Model, pencil: &Pencil, all: Vec<outcome::Raw>) -> Vec<Mode> {
-    let mut modes: Vec<Mode> = all.into_iter().map(|raw| finish(model, pencil, raw)).collect();
-    // what creeps away a million times slower than others move is rounding of what is free
-    let fastest = modes.iter().map(|m| m.growth.hypot(m.omega)).fold(0.0, f64::max);
-    let creeps = |m: &Mode| m.omega == 0.0 && m.growth > 0.0 && m.growth <= CREEPS * fastest;
-    // so is what swings ten million times slower
-    let drifts = |m: &Mode| m.growth == 0.0 && m.omega <= DRIFTS * fastest;
-    for mode in modes.iter_mut().filter(|m| creeps(m) || drifts(m)) {
-        (mode.growth, mode.omega, mode.rigid) = (0.0, 0.0, true);
+fn named(model: &Model, pencil: &Pencil, mut all: Vec<outcome::Raw>) -> Vec<Mode> {
+    let rate = |raw: &outcome::Raw| raw.rate[0].hypot(raw.rate[1]);
+    let rates: Vec<f64> = all.iter().map(rate).collect();
+    let fastest = rates.iter().copied().fold(0.0, f64::max);
+    for (raw, own) in all.iter_mut().zip(&rates).filter(|(raw, _)| !raw.rigid) {
+        // what creeps away a million times slower than others move is rounding of what is free
+        let creeps = raw.rate[1] == 0.0 && raw.rate[0] > 0.0 && *own <= CREEPS * fastest;
+        // so is what is left of a stiffness that cancels, unless others are about as slow
+        let next = rates.iter().copied().filter(|other| other > own).fold(f64::INFINITY, f64::min);
+        let drifts = raw.left <= CANCELS && next.is_finite() && *own <= APART * next;
+        if creeps || drifts {
+            (raw.rate, raw.rigid) = ([0.0; 2], true);
+        }
     }
+    let mut modes: Vec<Mode> = all.into_iter().map(|raw| finish(model, pencil, raw)).collect();
     modes.sort_by_key(|m| !m.rigid);
     modes
 }

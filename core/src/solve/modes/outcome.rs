@@ -131,6 +131,8 @@ pub(super) struct Raw {
     pub(super) rigid: bool,
     pub(super) shape: [Vec<f64>; 2],
     pub(super) residual: f64,
+    /// What is left of its stiffness, in parts of the entries that make it.
+    pub(super) left: f64,
 }
 
 pub(super) struct Found {

@@ -215,7 +215,7 @@ fn raw(p: &mut Pencil, rate: [f64; 2], scale: f64, vector: [Vec<f64>; 2]) -> Res
     // what is left of the equations, as a displacement against the shape
     let (l_re, l_im) = (rate[0], rate[1]);
     let (s_re, s_im) = (l_re * l_re - l_im * l_im, 2.0 * l_re * l_im);
-    let mut left = [vec![0.0; n], vec![0.0; n]];
+    let mut over = [vec![0.0; n], vec![0.0; n]];
     for (k, x) in [&a, &b].into_iter().enumerate() {
         let other = 1 - k;
         // i² = -1
@@ -226,18 +226,19 @@ fn raw(p: &mut Pencil, rate: [f64; 2], scale: f64, vector: [Vec<f64>; 2]) -> Res
                 1 => p.damping(x, &mut y),
                 _ => p.mass(x, &mut y),
             }
-            left[k].iter_mut().zip(&y).for_each(|(l, y)| *l += same * y);
-            left[other].iter_mut().zip(&y).for_each(|(l, y)| *l += sign * cross * y);
+            over[k].iter_mut().zip(&y).for_each(|(l, y)| *l += same * y);
+            over[other].iter_mut().zip(&y).for_each(|(l, y)| *l += sign * cross * y);
         }
     }
     let mut residual = 0.0;
-    for l in &mut left {
+    for l in &mut over {
         p.solve(l).map_err(ModesError::Solver)?;
         p.mass(l, &mut y);
         residual += dot(l, &y).max(0.0);
     }
     let rate = if rigid { [0.0, 0.0] } else { rate };
-    Ok(Raw { rate, rigid, shape: [a, b], residual: residual.sqrt() })
+    let left = (k_a.abs() + k_b.abs()) * f64::EPSILON / (n_a + n_b);
+    Ok(Raw { rate, rigid, shape: [a, b], residual: residual.sqrt(), left })
 }
 
 /// The vector at unit size in the norm of the mass; `None` of rounding.

@@ -219,12 +219,13 @@ fn raw(p: &mut Pencil, x: Vec<f64>) -> Result<Raw, ModesError> {
         () => [0.0, square.sqrt()],
     };
     // what is left of the equations, as a displacement against the shape
-    let mut left = vec![0.0; x.len()];
-    p.stiffness(&x, &mut left);
-    left.iter_mut().zip(&mx).for_each(|(r, mx)| *r -= square * mx);
-    p.solve(&mut left).map_err(ModesError::Solver)?;
+    let mut over = vec![0.0; x.len()];
+    p.stiffness(&x, &mut over);
+    over.iter_mut().zip(&mx).for_each(|(r, mx)| *r -= square * mx);
+    p.solve(&mut over).map_err(ModesError::Solver)?;
     let mut weighed = vec![0.0; x.len()];
-    p.mass(&left, &mut weighed);
-    let residual = (dot(&left, &weighed).max(0.0) / mass).sqrt();
-    Ok(Raw { rate, rigid, shape: [x, Vec::new()], residual })
+    p.mass(&over, &mut weighed);
+    let residual = (dot(&over, &weighed).max(0.0) / mass).sqrt();
+    let left = k.abs() * f64::EPSILON / noise;
+    Ok(Raw { rate, rigid, shape: [x, Vec::new()], residual, left })
 }
