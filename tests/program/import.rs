@@ -142,6 +142,8 @@ fn what_has_no_counterpart_is_refused_where_it_stands() {
     refused("kBot", "kBed", "the option `kBed` has no counterpart");
     refused("320     WtrDpth", "4 WaveKin\n320 WtrDpth", "waves of this kind");
     refused("320     WtrDpth", "3 WaveKin\n320 WtrDpth", "wave_elevation.txt`, which the deck needs");
+    refused("902.2    20 ", "902.2    2.5", "the number of segments must be whole, not 2.5");
+    refused("1       4       902.2", "1       1       902.2", "both ends of this line are at point `1`");
     refused("2   main     2 ", "1   main     2 ", "another line of the deck has the number 1 too");
     refused("320     WtrDpth", "1 Currents\n320 WtrDpth", "current_profile.txt`, which the deck needs");
     refused("902.2    20      -", "", "this row ends before its unstretched length");

@@ -298,3 +298,42 @@ fn bent_lines_find_their_waves_from_two_end_points() {
         }
     }
 }
+
+/// Waves feel the bed that lines lie on, and a grid reaches as far as they do: else it is told.
+#[test]
+fn beds_where_no_wave_feels_them_and_grids_that_end_too_soon_are_told() {
+    let text = |bed: &str, depth: f64| {
+        format!(
+            r#"
+            run = {{ duration = 0.1, output = 0.1 }}
+            [water]
+            level = 0
+            waves = {{ regular = {{ height = 1, period = 6 }}, depth = {depth}, ramp = 10 }}
+            [[elements]]
+            type = "cable"
+            name = "line"
+            points = [[0, 0, -29.951], [6, 0, -29.951]]
+            elements = 6
+            section = {{ mass = 10, ea = 1e6, diameter = 0.1, axial_retardation_time = 0.01 }}
+            [[forces]]
+            type = "gravity"
+            [[forces]]
+            type = "buoyancy"
+            [[forces]]
+            type = "bed"
+            stiffness = 1e5
+            {bed}
+            "#
+        )
+    };
+    let told =
+        |bed: &str, depth: f64, what: &str| run(&text(bed, depth)).warnings.iter().any(|w| w.contains(what));
+    let level = "point = [0, 0, -30]";
+    let elsewhere = "`bed` lies 30 m under the surface, and waves are those of water 45 m deep";
+    assert!(told(level, 45.0, elsewhere) && !told(level, 31.0, "waves are those of water"));
+    let grid = |x: f64| format!("grid = {{ x = [-10, {x}], y = [-10, 10], z = [[-30, -30], [-30, -30]] }}");
+    // the middle of the last element lies at 5.5 m
+    let beyond = "beyond the borders of the grid";
+    assert!(told(&grid(3.0), 30.0, "up to 2.5") && told(&grid(3.0), 30.0, beyond));
+    assert!(!told(&grid(10.0), 30.0, beyond));
+}

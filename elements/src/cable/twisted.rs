@@ -74,7 +74,7 @@ impl Bar {
         Ok(Bar { gj, eta_gj, rho_j, gyroscopic: s.gyroscopic, ei: s.ei, eta_ei, lay, directed })
     }
     /// Whether its bending is damped.
-    fn bends_slowly(&self) -> bool {
+    fn damps_bending(&self) -> bool {
         self.eta_ei.iter().any(|eta| *eta > 0.0)
     }
 }
@@ -364,7 +364,7 @@ impl Twisted {
             if gyroscopic {
                 b.element(SpinInertia { l, rho_j }, &on)?;
             }
-            if !self.bars[k].directed && self.bars[k].bends_slowly() {
+            if !self.bars[k].directed && self.bars[k].damps_bending() {
                 b.element::<_, 20, 14>(self.damping(k, l), &on)?;
             }
         }
@@ -378,7 +378,7 @@ impl Twisted {
             let Some(line) = flows(k) else {
                 let l = mesh[k + 1] - mesh[k];
                 b.element(self.bending(k, l), &on)?;
-                if self.bars[k].bends_slowly() {
+                if self.bars[k].damps_bending() {
                     b.element::<_, 21, 15>(self.damping(k, l), &on)?;
                 }
                 continue;

@@ -64,6 +64,12 @@ fn a_ball_in_a_measured_sea_goes_as_in_the_waves_that_made_it() {
         }
         assert!(b.iter().any(|x| (x - b[0]).abs() > 0.1));
     }
+    // 80 s of it repeat in a longer run
+    let repeats = |duration: u32| {
+        let text = ball(&recorded(&file)).replace("duration = 12", &format!("duration = {duration}"));
+        run(&text).warnings.iter().any(|w| w.contains("measured for 80 s"))
+    };
+    assert!(repeats(81) && !repeats(80));
 }
 
 #[test]

@@ -23,7 +23,7 @@ const NOISE: f64 = 256.0;
 /// Size of the differences by which `K'` is found, in lengths of the model and radians.
 const DIFFERENCE: f64 = 1e-3;
 /// Inverse of the largest factor, less 1, that is looked for.
-const LEAST: f64 = 1e-4;
+const LEAST: f64 = 1.0 / Critical::MOST;
 /// Start vectors, as round columns tip over in two ways at once.
 const STARTS: usize = 4;
 const MOST_TURNS: usize = 200;
