@@ -8,6 +8,8 @@ use crate::model::state::State;
 
 /// How often an equilibrium is searched again with what its memory has become.
 const SETTLED: u32 = 4;
+/// A step that leapt, on a way that can't be gone round, is halved down to so many of the shortest.
+const SHORT_ENOUGH: f64 = 16.0;
 /// How often a search goes on from what was folded.
 const UNFOLDED: u32 = 8;
 /// How often the arc of a path is tried before shorter steps are.
@@ -214,7 +216,7 @@ impl Statics<'_> {
                         let _ = self.locate_by_load(&before, state, &mut sum);
                     } else if self.leapt(&before, state)
                         && !self.go_round(&before, state, &mut sum)?
-                        && h.abs() > 16.0 * least
+                        && h.abs() > SHORT_ENOUGH * least
                     {
                         // nearer by the way may be seen
                         state.clone_from(&before);

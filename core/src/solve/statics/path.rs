@@ -242,7 +242,8 @@ impl Statics<'_> {
         !(left <= UNEXPLAINED * size)
     }
 
-    /// Goes the way that a step of the load may have leapt over; `false` if the arc can't be followed: the step stands.
+    /// Goes the way that a step of the load may have leapt over; `false` if the arc can't be followed: the state stays
+    /// where the step led.
     pub(super) fn go_round(
         &mut self,
         from: &State,
