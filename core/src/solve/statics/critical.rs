@@ -11,6 +11,8 @@ use crate::model::state::State;
 const HALVINGS: u32 = 20;
 /// How many of these leave what crosses clear of rounding.
 const CLEAR: u32 = 10;
+/// Cosine between the path and the direction that has become free from which on they are one: at a limit of the load.
+const ALONG: f64 = 0.7;
 /// What is left of the way between two equilibria once their loads are the same to rounding, if they are of different paths.
 const LEAP: f64 = 0.1;
 /// How far behind a critical load the stable path is taken up, in parts of what is left of the way.
@@ -28,13 +30,14 @@ pub(super) enum Crossing {
 }
 
 impl Statics<'_> {
-    /// Locates the critical point between `here` and the point a step further; `here` becomes the last one before it.
+    /// Locates the critical point between `here` and the point a step further; `here` becomes the last one before it. What was
+    /// come by is the tangent before, since the last ones may be bent by a path that branches off.
     /// `None` if there is none: these are points of different paths.
     pub(super) fn locate(
         &mut self,
         here: &mut Point,
-        beyond: &Point,
-        ds: f64,
+        (beyond, ds): (&Point, f64),
+        come: &[f64],
         way: Way,
         found: &mut Found,
     ) -> Option<Critical> {
@@ -57,21 +60,38 @@ impl Statics<'_> {
         if self.distance(&here.state.q, &after.state.q) > 1e-2 * ds {
             return None;
         }
-        let limit = after.rate * way.sign <= 0.0;
-        let directions = if limit { 1 } else { after.unstable.max(1) };
-        let shapes = self.soft(&here.state, directions).unwrap_or_default();
+        Some(self.critical_between(here, &after, come, way))
+    }
+
+    /// The critical point between two points of a path that are as good as one.
+    pub(super) fn critical_between(
+        &mut self,
+        here: &Point,
+        after: &Point,
+        come: &[f64],
+        way: Way,
+    ) -> Critical {
+        let directions = after.unstable.max(1);
+        let mut shapes = self.soft(&here.state, directions).unwrap_or_default();
+        // a path that branches off may turn the load round too, but isn't the way that was come
+        let limit = after.rate * way.sign <= 0.0
+            && shapes
+                .first()
+                .is_none_or(|soft| self.inner(come, soft).abs() > ALONG * self.inner(soft, soft).sqrt());
+        let directions = if limit { 1 } else { directions };
+        shapes.truncate(directions);
         let shape = match (limit, shapes.is_empty()) {
             (true, _) | (_, true) => self.small(here.slope[..self.model.velocities()].to_vec()),
             (false, false) => self.choose(&shapes),
         };
-        Some(Critical {
+        Critical {
             t: 0.5 * (here.state.t + after.state.t),
             kind: if limit { CriticalKind::Limit } else { CriticalKind::Bifurcation },
             directions,
             what: describe(self.model, &here.state.q, &shape),
             shape,
             state: self.riding(&here.state),
-        })
+        }
     }
 
     /// Locates where eigenvalues cross between two equilibria under loads without potential, by bisection of the load.

@@ -1,6 +1,7 @@
 //! One equilibrium from a guess, and the path of equilibria along the load.
 
 use super::critical::Crossing;
+use super::leap::UNEXPLAINED;
 use super::outcome::{Found, StaticsError};
 use super::problem::Statics;
 use super::search::FOLD;
@@ -8,8 +9,10 @@ use crate::model::state::State;
 
 /// How often an equilibrium is searched again with what its memory has become.
 const SETTLED: u32 = 4;
-/// A step that leapt, on a way that can't be gone round, is halved down to so many of the shortest.
+/// A step that may have leapt is halved down to so many of the shortest before the way between is gone round.
 const SHORT_ENOUGH: f64 = 16.0;
+/// What a step may leave unexplained, in parts of what it may leave at most, so that the next is longer.
+const EASY: f64 = 0.5;
 /// How often a search goes on from what was folded.
 const UNFOLDED: u32 = 8;
 /// How often the arc of a path is tried before shorter steps are.
@@ -195,7 +198,7 @@ impl Statics<'_> {
         let least = h.abs() / 256.0;
         // shorter steps of the load come before the arc, which costs more
         let short = h.abs() / 4.5;
-        let mut arcs = 0;
+        let (mut arcs, mut bent) = (0, false);
         while state.t != t {
             self.model.relabel(state);
             let before = state.clone();
@@ -214,17 +217,23 @@ impl Statics<'_> {
                     self.swung = false;
                     if self.judged.flutter > 0.0 && !swings {
                         let _ = self.locate_by_load(&before, state, &mut sum);
-                    } else if self.leapt(&before, state)
-                        && !self.go_round(&before, state, &mut sum)?
-                        && h.abs() > SHORT_ENOUGH * least
-                    {
-                        // nearer by the way may be seen
-                        state.clone_from(&before);
-                        h *= 0.5;
-                        continue;
+                    } else {
+                        let left = self.unexplained(&before, state);
+                        if left > UNEXPLAINED {
+                            if h.abs() > SHORT_ENOUGH * least {
+                                // nearer by the way may be seen
+                                state.clone_from(&before);
+                                h *= 0.5;
+                                continue;
+                            }
+                            self.go_round(&before, state, &mut sum)?;
+                        }
+                        bent = left > EASY * UNEXPLAINED;
                     }
                     self.model.settle(state);
-                    h *= 2.0;
+                    if !bent {
+                        h *= 2.0;
+                    }
                     continue;
                 }
                 // what was refused isn't found by smaller steps either

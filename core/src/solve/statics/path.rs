@@ -18,26 +18,22 @@ use crate::solve::linear::SolveError;
 /// First step, in parts of the reference length and of the whole load.
 const FIRST: f64 = 0.01;
 /// Longest step, and shortest.
-const LONGEST: f64 = 0.1;
+pub(super) const LONGEST: f64 = 0.1;
 const SHORTEST: f64 = 1e-8;
+/// Step below which paths that it leads between are one.
+const MEET: f64 = 1e-7;
 /// Least cosine between neighbouring tangents.
 const BEND: f64 = 0.98;
 /// Most iterations of a step.
 const ITERATIONS: u32 = 10;
 /// Most steps of a path.
 const STEPS: u32 = 5000;
-/// Mean move of a step of the load from which on its tangents are compared, relative to the reference length; and the part
-/// of it that they may leave unexplained.
-const FAR: f64 = 0.01;
-const UNEXPLAINED: f64 = 0.5;
-/// Longest step on the way that was leapt over, in parts of the leap.
-const LEAP_SHARE: f64 = 0.5;
 
 /// Step from which on another path may be what bends this one; most directions in which others may branch off at once.
 const BRANCHES: f64 = 1e-5;
 const MOST_BRANCHES: usize = 3;
 /// What the load may do along such a direction, in parts of what it could.
-const ACROSS: f64 = 1e-6;
+const ACROSS: f64 = 1e-3;
 
 /// Directions in which other paths branch off, as they are held: behind those that were held before.
 struct Branches {
@@ -55,7 +51,7 @@ pub(super) struct Way {
 }
 
 impl Way {
-    fn to(end: f64, from: f64, span: f64) -> Self {
+    pub fn to(end: f64, from: f64, span: f64) -> Self {
         Way { end, span: span.max(f64::MIN_POSITIVE), sign: (end - from).signum() }
     }
 }
@@ -77,7 +73,7 @@ impl Statics<'_> {
     }
 
     /// The same by steps of this size at most.
-    fn trace_by(
+    pub(super) fn trace_by(
         &mut self,
         state: &mut State,
         way: Way,
@@ -92,6 +88,7 @@ impl Statics<'_> {
         };
         let mut ds = FIRST.min(longest).min((end - state.t).abs() / way.span);
         let mut branches = Branches { before: self.free.len(), held: 0 };
+        let mut come = here.slope.clone();
         for _ in 0..STEPS {
             if self.is_over() {
                 break;
@@ -120,14 +117,14 @@ impl Statics<'_> {
             };
             found.iterations += iterations;
             if next.unstable > 0 || next.rate * way.sign <= 0.0 {
-                let Some(critical) = self.locate(&mut here, &next, ds, way, found) else {
-                    // the step had leapt from one path to another
-                    ds *= 0.25;
-                    if ds < SHORTEST {
-                        *state = here.state;
-                        return Err(self.fail(state, "paths of equilibria come too close", found.iterations));
+                let critical = match self.locate(&mut here, (&next, ds), &come, way, found) {
+                    Some(critical) => critical,
+                    // the step had leapt from one path to another, unless these meet here
+                    None if ds > MEET => {
+                        ds *= 0.25;
+                        continue;
                     }
-                    continue;
+                    None => self.critical_between(&here, &next, &come, way),
                 };
                 *state = here.state;
                 self.critical.push(critical.clone());
@@ -146,6 +143,7 @@ impl Statics<'_> {
                 continue;
             }
             here = next;
+            come.clone_from(&here.slope);
             ds = match iterations {
                 0..=3 => (1.5 * ds).min(longest),
                 4..=5 => ds,
@@ -218,60 +216,13 @@ impl Statics<'_> {
         Some(at_end)
     }
 
-    /// Whether a step of the load may have leapt from one path to another: the tangents at both ends don't explain it.
-    pub(super) fn leapt(&mut self, from: &State, to: &State) -> bool {
-        let nv = self.model.velocities();
-        let mut moved = vec![0.0; nv];
-        difference(self.model.nodes(), &from.q, &to.q, &mut moved);
-        let size = self.inner(&moved, &moved).sqrt();
-        if !(self.options.stable && self.judged.potential && size > FAR) {
-            return false;
-        }
-        let dt = to.t - from.t;
-        let way = Way::to(to.t, from.t, self.span.max(dt.abs()));
-        // where the step before ended, its tangent is known
-        let known = self.tangent.take().filter(|p| p.state == *from);
-        let Some(start) = known.or_else(|| self.point(from.clone(), None, way).ok()) else { return true };
-        let Ok(end) = self.point(to.clone(), None, way) else { return true };
-        for p in [&start, &end] {
-            // half of the trapezoidal rule
-            moved.iter_mut().zip(&p.slope).for_each(|(m, s)| *m -= 0.5 * dt * s / p.rate);
-        }
-        self.tangent = Some(end);
-        let left = self.inner(&moved, &moved).sqrt();
-        !(left <= UNEXPLAINED * size)
-    }
-
-    /// Goes the way that a step of the load may have leapt over; `false` if the arc can't be followed: the state stays
-    /// where the step led.
-    pub(super) fn go_round(
-        &mut self,
-        from: &State,
-        state: &mut State,
-        found: &mut Found,
-    ) -> Result<bool, StaticsError> {
-        let (known, mut there) = (self.critical.len(), from.clone());
-        let (unstable, neutral, doubt) = (self.unstable, self.neutral.clone(), self.doubt.clone());
-        let (judged, free) = (self.judged.clone(), self.free.clone());
-        // what was leapt over may be small, both in load and in size
-        let way = Way::to(state.t, from.t, (state.t - from.t).abs());
-        let longest = (LEAP_SHARE * self.distance(&from.q, &state.q)).min(LONGEST);
-        match self.trace_by(&mut there, way, longest, found) {
-            Ok(()) => {
-                *state = there;
-                return Ok(true);
-            }
-            Err(e) if self.critical.len() > known => return Err(e),
-            Err(_) => {
-                (self.unstable, self.neutral, self.doubt) = (unstable, neutral, doubt);
-                (self.judged, self.free) = (judged, free);
-            }
-        }
-        Ok(false)
-    }
-
     /// The tangent of the path at an equilibrium, in the direction of `before`, or else of the way.
-    fn point(&mut self, state: State, before: Option<&Point>, way: Way) -> Result<Point, SolveError> {
+    pub(super) fn point(
+        &mut self,
+        state: State,
+        before: Option<&Point>,
+        way: Way,
+    ) -> Result<Point, SolveError> {
         let rate = self.assemble_with_rate(&state, None, way);
         let symmetric = self.structure.symmetric || self.is_mirrored();
         let w = self.weights();

@@ -1,7 +1,7 @@
 //! The search for equilibria of one model: what it works on, and what it has found so far.
 
 use super::options::StaticsOptions;
-use super::outcome::{Critical, Judgement, Neutral, Point};
+use super::outcome::{Critical, Judgement, Neutral};
 use crate::model::Model;
 use crate::model::assembly::System;
 use crate::model::motion::SteadyFrame;
@@ -47,8 +47,6 @@ pub struct Statics<'a> {
     pub(super) judged: Judgement,
     /// Critical loads met so far.
     pub(super) critical: Vec<Critical>,
-    /// The path at the end of the last step of the load whose ends were compared.
-    pub(super) tangent: Option<Point>,
     /// Longest stretch of time that was to be followed.
     pub(super) span: f64,
     /// Whether to give up, asked at every iteration.
@@ -105,7 +103,6 @@ impl<'a> Statics<'a> {
             doubt: None,
             judged: Judgement { potential: true, ..Judgement::default() },
             critical: Vec::new(),
-            tangent: None,
             span: 0.0,
             is_over: None,
         })
@@ -125,7 +122,6 @@ impl<'a> Statics<'a> {
         self.solver = Guard::new(&self.structure)?;
         self.softening = self.softening.take().map(|_| Softening::new(self.model, &self.structure));
         self.free.clear();
-        self.tangent = None;
         Ok(true)
     }
 

@@ -1,0 +1,75 @@
+//! Steps of the load that may have leapt from one path of equilibria to another: the tangents at both ends don't explain the move.
+
+use super::outcome::{Found, StaticsError};
+use super::path::{LONGEST, Way};
+use super::problem::Statics;
+use crate::model::node::difference;
+use crate::model::state::State;
+
+/// Mean move of a part from which on tangents are compared, relative to its length.
+const FAR: f64 = 1e-3;
+/// Part of the move that they may leave unexplained.
+pub(super) const UNEXPLAINED: f64 = 0.1;
+/// Longest step on the way that was leapt over, in parts of the leap.
+const LEAP_SHARE: f64 = 0.5;
+
+impl Statics<'_> {
+    /// The part of a move between two equilibria that the tangents of the path at both ends leave unexplained, of the part of the
+    /// model where it is largest; nothing where hardly anything moves, all of it where the path has no tangent.
+    pub(super) fn unexplained(&mut self, from: &State, to: &State) -> f64 {
+        let mut moved = vec![0.0; self.model.velocities()];
+        difference(self.model.nodes(), &from.q, &to.q, &mut moved);
+        let sizes = self.moves(&moved);
+        if !(self.options.stable && self.judged.potential && sizes.iter().any(|x| *x > FAR)) {
+            return 0.0;
+        }
+        let dt = to.t - from.t;
+        let way = Way::to(to.t, from.t, self.span.max(dt.abs()));
+        // where the step before ended, its tangent is known
+        let Ok(start) = self.point(from.clone(), None, way) else { return f64::INFINITY };
+        // beyond the end loads may be others
+        let back = Way { sign: -way.sign, ..way };
+        let Ok(end) = self.point(to.clone(), None, back) else { return f64::INFINITY };
+        for p in [&start, &end] {
+            // half of the trapezoidal rule
+            moved.iter_mut().zip(&p.slope).for_each(|(m, s)| *m -= 0.5 * dt * s / p.rate);
+        }
+        let shares = self.moves(&moved).into_iter().zip(sizes).filter(|(_, size)| *size > FAR);
+        shares.fold(0.0, |most, (left, size)| if left <= most * size { most } else { left / size })
+    }
+
+    /// How far an increment moves the model, in parts of its reference length, and each line in parts of its own.
+    fn moves(&self, d: &[f64]) -> Vec<f64> {
+        let lines = self.model.parts().iter().filter(|part| part.seats().len() > 1 && part.length() > 0.0);
+        let own = lines.map(|part| {
+            let seats = part.seats();
+            let square: f64 = seats.iter().flat_map(|&(_, v)| &d[v..v + 3]).map(|x| x * x).sum();
+            (square / seats.len() as f64).sqrt() / part.length()
+        });
+        std::iter::once(self.inner(d, d).sqrt()).chain(own).collect()
+    }
+
+    /// Goes the way that a step of the load may have leapt over. The state stays where the step led if the arc can't be followed.
+    pub(super) fn go_round(
+        &mut self,
+        from: &State,
+        state: &mut State,
+        found: &mut Found,
+    ) -> Result<(), StaticsError> {
+        let (known, mut there) = (self.critical.len(), from.clone());
+        let (unstable, neutral, doubt) = (self.unstable, self.neutral.clone(), self.doubt.clone());
+        let (judged, free) = (self.judged.clone(), self.free.clone());
+        // what was leapt over may be small, both in load and in size
+        let way = Way::to(state.t, from.t, (state.t - from.t).abs());
+        let longest = (LEAP_SHARE * self.distance(&from.q, &state.q)).min(LONGEST);
+        match self.trace_by(&mut there, way, longest, found) {
+            Ok(()) => *state = there,
+            Err(e) if self.critical.len() > known => return Err(e),
+            Err(_) => {
+                (self.unstable, self.neutral, self.doubt) = (unstable, neutral, doubt);
+                (self.judged, self.free) = (judged, free);
+            }
+        }
+        Ok(())
+    }
+}
