@@ -4,6 +4,7 @@ use crate::modes::{close, modal};
 use ropewalk::{ModesOptions, modes, simulate};
 use ropewalk_constraints::{DirectionSpec, PointOnLineSpec, SphericalSpec};
 use ropewalk_core::modes::Mode;
+use ropewalk_core::statics::CriticalKind;
 use ropewalk_elements::{CableSpec, Section};
 use ropewalk_forces::{GravitySpec, PointForceSpec, TimeFunction};
 use ropewalk_scene::{Analysis, Format, Scene, SceneFile};
@@ -331,59 +332,104 @@ fn a_bar_on_a_spring_falls_over_at_its_weight() {
     }
 }
 
+/// An arch between two hinges with a rise over half of its span, 1 m: `ea` and what loads it.
+fn arch(rise: f64, ea: f64, steps: usize, load: &str, besides: &str) -> String {
+    let radius: f64 = (1.0 + rise * rise) / (2.0 * rise);
+    let end = (1.0 / radius).asin();
+    let at = |i: i32| end * f64::from(i) / 12.0;
+    let curve: Vec<[f64; 3]> =
+        (-12..=12).map(|i| [radius * at(i).sin(), 0.0, radius * (at(i).cos() - end.cos())]).collect();
+    let (along, up) = (end.cos(), end.sin());
+    let mut text = format!(
+        r#"
+        run = {{ analysis = "statics", duration = 1 }}
+        statics = {{ steps = {steps} }}
+        gravity = [0, 0, 0]
+        [[elements]]
+        type = "cable"
+        name = "arch"
+        curve = {curve:?}
+        start_direction = [{along}, 0, {up}]
+        end_direction = [{along}, 0, -{up}]
+        elements = 24
+        stress_free = "as-laid"
+        section = {{ mass = 1, ea = {ea:e}, ei = [1, 100], gj = 100 }}
+        normal = [0, 1, 0]
+        {besides}
+        [[forces]]
+        {load}
+        "#
+    );
+    for end in ["start", "end"] {
+        let hinge = "type = \"revolute\"\naxis = [0, 1, 0]";
+        writeln!(text, "[[constraints]]\n{hinge}\nname = \"{end}\"\nmarker = \"arch.{end}\"").expect("text");
+    }
+    text
+}
+
+/// A force on its top, or on all of it, that grows with time from one share of itself.
+fn on_top(load: f64, from: f64) -> String {
+    let time = format!("time = {{ table = {{ t = [0, 1], value = [{from}, 1] }} }}");
+    format!("type = \"point_force\"\nmarker = \"arch@50%\"\nforce = [0, 0, -{load}]\n{time}")
+}
+
+fn all_along(load: f64, from: f64) -> String {
+    let time = format!("time = {{ table = {{ t = [0, 1], value = [{from}, 1] }} }}");
+    format!("type = \"line_load\"\non = [\"arch\"]\nforce = [0, 0, -{load}]\n{time}")
+}
+
+fn parse(text: &str) -> SceneFile {
+    SceneFile::parse(text, "arch", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
 /// An arch that is nearly flat snaps through by little, under a fiftieth of the load: a path sees that however few its steps are, at
 /// the load that linear stability about a small one leads to.
 #[test]
 fn a_path_does_not_leap_over_a_small_snap() {
-    let arch = |steps: usize, load: f64| {
-        let rise = 0.05;
-        let radius: f64 = (1.0 + rise * rise) / (2.0 * rise);
-        let end = (1.0 / radius).asin();
-        let at = |i: i32| end * f64::from(i) / 12.0;
-        let curve: Vec<[f64; 3]> =
-            (-12..=12).map(|i| [radius * at(i).sin(), 0.0, radius * (at(i).cos() - end.cos())]).collect();
-        let (along, up) = (end.cos(), end.sin());
-        let mut text = format!(
-            r#"
-            run = {{ analysis = "statics", duration = 1 }}
-            statics = {{ steps = {steps} }}
-            gravity = [0, 0, 0]
-            [[elements]]
-            type = "cable"
-            name = "arch"
-            curve = {curve:?}
-            start_direction = [{along}, 0, {up}]
-            end_direction = [{along}, 0, -{up}]
-            elements = 24
-            stress_free = "as-laid"
-            section = {{ mass = 1, ea = 1e6, ei = [1, 100], gj = 100 }}
-            normal = [0, 1, 0]
-            [[forces]]
-            type = "point_force"
-            marker = "arch@50%"
-            force = [0, 0, -{load}]
-            time = {{ table = {{ t = [0, 1], value = [0, 1] }} }}
-            "#
-        );
-        for end in ["start", "end"] {
-            let hinge = "type = \"revolute\"\naxis = [0, 1, 0]";
-            writeln!(text, "[[constraints]]\n{hinge}\nname = \"{end}\"\nmarker = \"arch.{end}\"")
-                .expect("text");
-        }
-        text
-    };
-    let parse =
-        |text: &str| SceneFile::parse(text, "arch", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
     let mut critical = None;
-    for steps in [2, 3, 10, 40] {
-        let h = simulate(parse(&arch(steps, 60.0)).scene()).unwrap_or_else(|e| panic!("{e}"));
+    for steps in [1, 2, 3, 10, 40] {
+        let h = simulate(parse(&arch(0.05, 1e6, steps, &on_top(60.0, 0.0), "")).scene())
+            .unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(h.critical.len(), 1, "{steps} steps: {:?}", h.critical);
         let load = 60.0 * h.critical[0].load_factor;
         close("snap", load, *critical.get_or_insert(load), 1e-5);
     }
     // as `modes` has it
     let options = ModesOptions { time: Some(1.0), ..ModesOptions::default() };
-    let found = modes(parse(&arch(1, 0.5)).scene(), &options).unwrap_or_else(|e| panic!("{e}"));
+    let found = modes(parse(&arch(0.05, 1e6, 1, &on_top(0.5, 0.0), "")).scene(), &options)
+        .unwrap_or_else(|e| panic!("{e}"));
     let factor = found.critical.and_then(|c| c.factor).expect("it snaps");
     close("by modes", 0.5 * factor, critical.expect("found"), 1e-4);
+}
+
+/// What gives way is told with its load and its kind, however many steps the load takes: also where it is pulled up first, beside
+/// a line a hundred times as long, and where it snaps through soon after it would have swayed.
+#[test]
+fn what_gives_way_does_not_hang_on_the_steps() {
+    let long = "[[elements]]\ntype = \"cable\"\nname = \"long\"\npoints = [[0, 0, -5], [200, 0, -5]]\nelements = 8\n\
+                section = { mass = 1, ea = 1e6, ei = 1 }\n\
+                [[constraints]]\ntype = \"spherical\"\nname = \"c\"\nmarker = \"long.start\"\n\
+                [[constraints]]\ntype = \"spherical\"\nname = \"d\"\nmarker = \"long.end\"";
+    let cases = [
+        ("pulled up first", 0.05, 2.5e3, all_along(5.0, -1.0), ""),
+        ("beside a long line", 0.05, 1e6, on_top(60.0, 0.0), long),
+        ("sways", 0.1, 2.5e3, all_along(10.0, -1.0), ""),
+        ("sways at once", 0.1, 2.5e5, all_along(10.0, 0.0), ""),
+    ];
+    for (what, rise, ea, load, besides) in cases {
+        let mut first: Option<(f64, CriticalKind)> = None;
+        for steps in [1, 2, 3, 10, 40] {
+            let h = simulate(parse(&arch(rise, ea, steps, &load, besides)).scene())
+                .unwrap_or_else(|e| panic!("{what}, {steps} steps: {e}"));
+            println!(
+                "{what}, {steps} steps: {:?}",
+                h.critical.iter().map(|c| (c.load_factor, c.kind)).collect::<Vec<_>>()
+            );
+            assert_eq!(h.critical.len(), 1, "{what}, {steps} steps: {:?}", h.critical);
+            let found = (h.critical[0].load_factor, h.critical[0].kind);
+            let known = *first.get_or_insert(found);
+            close(what, found.0, known.0, 1e-6);
+            assert_eq!(found.1, known.1, "{what}, {steps} steps");
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::naming::describe;
 use super::outcome::{Critical, CriticalKind, Found, Judgement, Point, StaticsError};
-use super::path::Way;
+use super::path::{ACROSS, Way};
 use super::problem::Statics;
 use crate::model::node::{difference, retract};
 use crate::model::state::State;
@@ -30,14 +30,14 @@ pub(super) enum Crossing {
 }
 
 impl Statics<'_> {
-    /// Locates the critical point between `here` and the point a step further; `here` becomes the last one before it. What was
-    /// come by is the tangent before, since the last ones may be bent by a path that branches off.
+    /// Locates the critical point between `here` and the point a step further; `here` becomes the last one before it. It was
+    /// come by from a point whose tangent counts, since the last ones may be bent by a path that branches off.
     /// `None` if there is none: these are points of different paths.
     pub(super) fn locate(
         &mut self,
         here: &mut Point,
         (beyond, ds): (&Point, f64),
-        come: &[f64],
+        come: &Point,
         way: Way,
         found: &mut Found,
     ) -> Option<Critical> {
@@ -68,16 +68,14 @@ impl Statics<'_> {
         &mut self,
         here: &Point,
         after: &Point,
-        come: &[f64],
+        come: &Point,
         way: Way,
     ) -> Critical {
         let directions = after.unstable.max(1);
         let mut shapes = self.soft(&here.state, directions).unwrap_or_default();
-        // a path that branches off may turn the load round too, but isn't the way that was come
+        // a path that branches off may turn the load round too, but the load does nothing in its direction
         let limit = after.rate * way.sign <= 0.0
-            && shapes
-                .first()
-                .is_none_or(|soft| self.inner(come, soft).abs() > ALONG * self.inner(soft, soft).sqrt());
+            && shapes.first().is_none_or(|soft| self.is_driven_along(soft, &here.state, come, way));
         let directions = if limit { 1 } else { directions };
         shapes.truncate(directions);
         let shape = match (limit, shapes.is_empty()) {
@@ -92,6 +90,17 @@ impl Statics<'_> {
             shape,
             state: self.riding(&here.state),
         }
+    }
+
+    /// Whether the load, as it grows, drives a model along a direction. Of what is led by motions the way that was come by tells.
+    pub(super) fn is_driven_along(&mut self, soft: &[f64], state: &State, come: &Point, way: Way) -> bool {
+        let rate = self.assemble_with_rate(state, None, way);
+        let (loads, motions) = rate.split_at(self.model.velocities());
+        if motions.iter().any(|x| *x != 0.0) {
+            return self.inner(&come.slope, soft).abs() > ALONG * self.inner(soft, soft).sqrt();
+        }
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        dot(soft, loads).abs() > ACROSS * (dot(soft, soft) * dot(loads, loads)).sqrt()
     }
 
     /// Locates where eigenvalues cross between two equilibria under loads without potential, by bisection of the load.

@@ -20,6 +20,10 @@ const FIRST: f64 = 0.01;
 /// Longest step, and shortest.
 pub(super) const LONGEST: f64 = 0.1;
 const SHORTEST: f64 = 1e-8;
+/// Step below which any path is straight to rounding, and may bend by any angle.
+const STRAIGHT: f64 = 1e-6;
+/// Loads that are the same, where a path branches off and turns round, in parts of the whole.
+const SAME: f64 = 1e-4;
 /// Step below which paths that it leads between are one.
 const MEET: f64 = 1e-7;
 /// Least cosine between neighbouring tangents.
@@ -33,7 +37,7 @@ const STEPS: u32 = 5000;
 const BRANCHES: f64 = 1e-5;
 const MOST_BRANCHES: usize = 3;
 /// What the load may do along such a direction, in parts of what it could.
-const ACROSS: f64 = 1e-3;
+pub(super) const ACROSS: f64 = 1e-3;
 
 /// Directions in which other paths branch off, as they are held: behind those that were held before.
 struct Branches {
@@ -88,7 +92,7 @@ impl Statics<'_> {
         };
         let mut ds = FIRST.min(longest).min((end - state.t).abs() / way.span);
         let mut branches = Branches { before: self.free.len(), held: 0 };
-        let mut come = here.slope.clone();
+        let (mut come, mut branched) = (here.clone(), false);
         for _ in 0..STEPS {
             if self.is_over() {
                 break;
@@ -127,7 +131,11 @@ impl Statics<'_> {
                     None => self.critical_between(&here, &next, &come, way),
                 };
                 *state = here.state;
-                self.critical.push(critical.clone());
+                // a path that branched off may turn round at once
+                let known = self.critical.last().filter(|_| branched);
+                if known.is_none_or(|last| (last.t - critical.t).abs() > SAME * way.span) {
+                    self.critical.push(critical.clone());
+                }
                 return self.leave(state, &here.slope, &critical, way, found);
             }
             if (next.state.t - end) * way.sign >= 0.0 {
@@ -143,7 +151,14 @@ impl Statics<'_> {
                 continue;
             }
             here = next;
-            come.clone_from(&here.slope);
+            if ds >= STRAIGHT {
+                if self.has_branched(&here, &come, way) {
+                    let critical = self.critical_between(&here, &here, &come, way);
+                    self.critical.push(critical);
+                    branched = true;
+                }
+                come.clone_from(&here);
+            }
             ds = match iterations {
                 0..=3 => (1.5 * ds).min(longest),
                 4..=5 => ds,
@@ -152,6 +167,25 @@ impl Statics<'_> {
         }
         *state = here.state;
         Err(self.fail(state, "the path of equilibria goes on for ever", found.iterations))
+    }
+
+    /// Whether a path that bends at once has gone over to one that branches off: the way that was come by would go on, unstable.
+    fn has_branched(&mut self, here: &Point, come: &Point, way: Way) -> bool {
+        let cosine = self.inner(&here.slope, &come.slope) + here.rate * come.rate / way.span.powi(2);
+        if cosine >= BEND {
+            return false;
+        }
+        let mut on = here.state.clone();
+        let nv = self.model.velocities();
+        let move_on: Vec<f64> = come.slope[..nv].iter().map(|x| FIRST * x).collect();
+        retract(self.model.nodes(), &here.state.q, &move_on, &mut on.q);
+        on.lambda.iter_mut().zip(&come.slope[nv..]).for_each(|(l, s)| *l += FIRST * s);
+        on.t += FIRST * come.rate;
+        // round a limit of the load it would go on like that, too
+        self.point(on, None, way).is_ok_and(|p| p.unstable > 0)
+            && self
+                .soft(&here.state, 1)
+                .is_some_and(|soft| !self.is_driven_along(&soft[0], &here.state, come, way))
     }
 
     /// Next to a bifurcation rounding bends the path towards the one that branches off. Holds the softest direction, or one
@@ -293,8 +327,7 @@ impl Statics<'_> {
                     (self.inner(&moved, &moved) + ((there.t - here.state.t) / way.span).powi(2)).sqrt();
                 let next = self.point(there, Some(here), way).ok()?;
                 let cosine = self.inner(&here.slope, &next.slope) + here.rate * next.rate / way.span.powi(2);
-                // what is shorter than this is straight to rounding
-                return (went <= 2.5 * ds && (cosine >= BEND || ds < 1e-6)).then_some((next, k));
+                return (went <= 2.5 * ds && (cosine >= BEND || ds < STRAIGHT)).then_some((next, k));
             }
             before = size;
         }
@@ -303,7 +336,7 @@ impl Statics<'_> {
 
     /// Residual and tangent at an equilibrium or on the way to one, ready for factorisation; returns how the residual
     /// changes with time.
-    fn assemble_with_rate(&mut self, state: &State, last: Option<&[f64]>, way: Way) -> Vec<f64> {
+    pub(super) fn assemble_with_rate(&mut self, state: &State, last: Option<&[f64]>, way: Way) -> Vec<f64> {
         let how = Relaxation::check(last.is_some(), 0.0);
         let relaxed = last.map(|_| Relaxed { last, how });
         self.assemble(state, &state.q, &state.lambda, relaxed, false);
