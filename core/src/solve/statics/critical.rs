@@ -92,15 +92,33 @@ impl Statics<'_> {
         }
     }
 
-    /// Whether the load, as it grows, drives a model along a direction. Of what is led by motions the way that was come by tells.
-    pub(super) fn is_driven_along(&mut self, soft: &[f64], state: &State, come: &Point, way: Way) -> bool {
+    /// Whether the load, as it grows, drives the model along a direction. Of what is led by motions the way that was come by
+    /// tells.
+    fn is_driven_along(&mut self, soft: &[f64], state: &State, come: &Point, way: Way) -> bool {
+        match self.work_along(soft, state, way) {
+            Some(share) => share > ACROSS,
+            None => self.inner(&come.slope, soft).abs() > ALONG * self.inner(soft, soft).sqrt(),
+        }
+    }
+
+    /// What the load, as it grows, does along a direction, in parts of what it could; `None` where motions lead the model.
+    pub(super) fn work_along(&mut self, soft: &[f64], state: &State, way: Way) -> Option<f64> {
         let rate = self.assemble_with_rate(state, None, way);
         let (loads, motions) = rate.split_at(self.model.velocities());
         if motions.iter().any(|x| *x != 0.0) {
-            return self.inner(&come.slope, soft).abs() > ALONG * self.inner(soft, soft).sqrt();
+            return None;
         }
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        dot(soft, loads).abs() > ACROSS * (dot(soft, soft) * dot(loads, loads)).sqrt()
+        let (mut work, mut squares) = (0.0, [0.0; 2]);
+        for n in self.model.nodes() {
+            for i in n.dofs() {
+                // slopes and rotations have no length
+                let unit = if i < n.v + 3 && n.kind.has_position() { self.model.length() } else { 1.0 };
+                let (d, f) = (soft[i] / unit, loads[i] * unit);
+                work += d * f;
+                squares = [squares[0] + d * d, squares[1] + f * f];
+            }
+        }
+        Some(work.abs() / (squares[0] * squares[1]).sqrt().max(f64::MIN_POSITIVE))
     }
 
     /// Locates where eigenvalues cross between two equilibria under loads without potential, by bisection of the load.

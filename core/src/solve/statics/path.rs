@@ -22,6 +22,8 @@ pub(super) const LONGEST: f64 = 0.1;
 const SHORTEST: f64 = 1e-8;
 /// Step below which any path is straight to rounding, and may bend by any angle.
 const STRAIGHT: f64 = 1e-6;
+/// The same before a path that is straight but for rounding.
+const NO_WORK: f64 = 1e-8;
 /// Loads that are the same, where a path branches off and turns round, in parts of the whole.
 const SAME: f64 = 1e-4;
 /// Step below which paths that it leads between are one.
@@ -181,11 +183,12 @@ impl Statics<'_> {
         retract(self.model.nodes(), &here.state.q, &move_on, &mut on.q);
         on.lambda.iter_mut().zip(&come.slope[nv..]).for_each(|(l, s)| *l += FIRST * s);
         on.t += FIRST * come.rate;
-        // round a limit of the load it would go on like that, too
+        // round a limit of the load, or where it was never quite straight, it would go on like that, too
         self.point(on, None, way).is_ok_and(|p| p.unstable > 0)
             && self
-                .soft(&here.state, 1)
-                .is_some_and(|soft| !self.is_driven_along(&soft[0], &here.state, come, way))
+                .soft(&come.state, 1)
+                .and_then(|soft| self.work_along(&soft[0], &come.state, way))
+                .is_some_and(|work| work <= NO_WORK)
     }
 
     /// Next to a bifurcation rounding bends the path towards the one that branches off. Holds the softest direction, or one
