@@ -415,6 +415,8 @@ fn what_gives_way_does_not_hang_on_the_steps() {
         ("beside a long line", 0.05, 1e6, on_top(60.0, 0.0), long),
         ("sways", 0.1, 2.5e3, all_along(10.0, -1.0), ""),
         ("sways at once", 0.1, 2.5e5, all_along(10.0, 0.0), ""),
+        // the path goes over to the one that branches off, which is stable
+        ("sways little by little", 1.0, 1e3, on_top(6.1, 0.0), ""),
     ];
     for (what, rise, ea, load, besides) in cases {
         let mut first: Option<(f64, CriticalKind)> = None;
@@ -428,7 +430,7 @@ fn what_gives_way_does_not_hang_on_the_steps() {
             assert_eq!(h.critical.len(), 1, "{what}, {steps} steps: {:?}", h.critical);
             let found = (h.critical[0].load_factor, h.critical[0].kind);
             let known = *first.get_or_insert(found);
-            close(what, found.0, known.0, 1e-6);
+            close(what, found.0, known.0, 1e-4);
             assert_eq!(found.1, known.1, "{what}, {steps} steps");
         }
     }

@@ -25,7 +25,6 @@ impl Statics<'_> {
         }
         let dt = to.t - from.t;
         let way = Way::to(to.t, from.t, self.span.max(dt.abs()));
-        // where the step before ended, its tangent is known
         let Ok(start) = self.point(from.clone(), None, way) else { return f64::INFINITY };
         // beyond the end loads may be others
         let back = Way { sign: -way.sign, ..way };

@@ -8,7 +8,7 @@
 //!
 //! Riks (1979), Int. J. Solids Struct. 15, 529; Crisfield (1981), Comput. Struct. 13, 55.
 
-use super::outcome::{Found, Point, StaticsError};
+use super::outcome::{Critical, Found, Point, StaticsError};
 use super::problem::Statics;
 use super::stability::MARGIN;
 use crate::model::node::{Node, NodeKind, difference, retract};
@@ -22,10 +22,6 @@ pub(super) const LONGEST: f64 = 0.1;
 const SHORTEST: f64 = 1e-8;
 /// Step below which any path is straight to rounding, and may bend by any angle.
 const STRAIGHT: f64 = 1e-6;
-/// The same before a path that is straight but for rounding.
-const NO_WORK: f64 = 1e-8;
-/// Loads that are the same, where a path branches off and turns round, in parts of the whole.
-const SAME: f64 = 1e-4;
 /// Step below which paths that it leads between are one.
 const MEET: f64 = 1e-7;
 /// Least cosine between neighbouring tangents.
@@ -40,6 +36,10 @@ const BRANCHES: f64 = 1e-5;
 const MOST_BRANCHES: usize = 3;
 /// What the load may do along such a direction, in parts of what it could.
 pub(super) const ACROSS: f64 = 1e-3;
+/// The same before a path branches off that is straight but for rounding.
+const NO_WORK: f64 = 1e-8;
+/// Loads that are the same, where a path branches off and turns round, in parts of the whole.
+const SAME: f64 = 1e-4;
 
 /// Directions in which other paths branch off, as they are held: behind those that were held before.
 struct Branches {
@@ -94,7 +94,7 @@ impl Statics<'_> {
         };
         let mut ds = FIRST.min(longest).min((end - state.t).abs() / way.span);
         let mut branches = Branches { before: self.free.len(), held: 0 };
-        let (mut come, mut branched) = (here.clone(), false);
+        let (mut come, mut passed) = (here.clone(), Vec::<Critical>::new());
         for _ in 0..STEPS {
             if self.is_over() {
                 break;
@@ -105,6 +105,7 @@ impl Statics<'_> {
             if reach > 0.0 && ds >= reach {
                 if let Some(at_end) = self.arrive(&here, reach, end, found) {
                     *state = at_end;
+                    self.critical.append(&mut passed);
                     return Ok(());
                 }
                 ds = 0.5 * reach;
@@ -134,15 +135,16 @@ impl Statics<'_> {
                 };
                 *state = here.state;
                 // a path that branched off may turn round at once
-                let known = self.critical.last().filter(|_| branched);
-                if known.is_none_or(|last| (last.t - critical.t).abs() > SAME * way.span) {
-                    self.critical.push(critical.clone());
+                if passed.last().is_none_or(|last| (last.t - critical.t).abs() > SAME * way.span) {
+                    passed.push(critical.clone());
                 }
+                self.critical.append(&mut passed);
                 return self.leave(state, &here.slope, &critical, way, found);
             }
             if (next.state.t - end) * way.sign >= 0.0 {
                 if let Some(at_end) = self.end_between(&here, &next, end, found) {
                     *state = at_end;
+                    self.critical.append(&mut passed);
                     return Ok(());
                 }
                 ds *= 0.25;
@@ -155,9 +157,7 @@ impl Statics<'_> {
             here = next;
             if ds >= STRAIGHT {
                 if self.has_branched(&here, &come, way) {
-                    let critical = self.critical_between(&here, &here, &come, way);
-                    self.critical.push(critical);
-                    branched = true;
+                    passed.push(self.critical_between(&here, &here, &come, way));
                 }
                 come.clone_from(&here);
             }
