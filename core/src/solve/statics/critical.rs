@@ -12,7 +12,7 @@ const HALVINGS: u32 = 20;
 /// How many of these leave what crosses clear of rounding.
 const CLEAR: u32 = 10;
 /// Cosine between the path and the direction that has become free from which on they are one: at a limit of the load.
-const ALONG: f64 = 0.7;
+pub(super) const ALONG: f64 = 0.7;
 /// What is left of the way between two equilibria once their loads are the same to rounding, if they are of different paths.
 const LEAP: f64 = 0.1;
 /// How far behind a critical load the stable path is taken up, in parts of what is left of the way.

@@ -8,6 +8,7 @@
 //!
 //! Riks (1979), Int. J. Solids Struct. 15, 529; Crisfield (1981), Comput. Struct. 13, 55.
 
+use super::critical::ALONG;
 use super::outcome::{Critical, Found, Point, StaticsError};
 use super::problem::Statics;
 use super::stability::MARGIN;
@@ -183,12 +184,13 @@ impl Statics<'_> {
         retract(self.model.nodes(), &here.state.q, &move_on, &mut on.q);
         on.lambda.iter_mut().zip(&come.slope[nv..]).for_each(|(l, s)| *l += FIRST * s);
         on.t += FIRST * come.rate;
+        if !self.point(on, None, way).is_ok_and(|p| p.unstable > 0) {
+            return false;
+        }
         // round a limit of the load, or where it was never quite straight, it would go on like that, too
-        self.point(on, None, way).is_ok_and(|p| p.unstable > 0)
-            && self
-                .soft(&come.state, 1)
-                .and_then(|soft| self.work_along(&soft[0], &come.state, way))
-                .is_some_and(|work| work <= NO_WORK)
+        let Some(soft) = self.soft(&come.state, 1) else { return false };
+        let into = self.inner(&here.slope, &soft[0]).abs() > ALONG * self.inner(&soft[0], &soft[0]).sqrt();
+        into && self.work_along(&soft[0], &come.state, way).is_some_and(|work| work <= NO_WORK)
     }
 
     /// Next to a bifurcation rounding bends the path towards the one that branches off. Holds the softest direction, or one
