@@ -108,17 +108,22 @@ impl Statics<'_> {
         if motions.iter().any(|x| *x != 0.0) {
             return None;
         }
+        Some(self.share_of_work(soft, loads))
+    }
+
+    /// The work of forces along a direction, in parts of what they could do.
+    pub(super) fn share_of_work(&self, direction: &[f64], forces: &[f64]) -> f64 {
         let (mut work, mut squares) = (0.0, [0.0; 2]);
         for n in self.model.nodes() {
             for i in n.dofs() {
                 // slopes and rotations have no length
                 let unit = if i < n.v + 3 && n.kind.has_position() { self.model.length() } else { 1.0 };
-                let (d, f) = (soft[i] / unit, loads[i] * unit);
+                let (d, f) = (direction[i] / unit, forces[i] * unit);
                 work += d * f;
                 squares = [squares[0] + d * d, squares[1] + f * f];
             }
         }
-        Some(work.abs() / (squares[0] * squares[1]).sqrt().max(f64::MIN_POSITIVE))
+        work.abs() / (squares[0] * squares[1]).sqrt().max(f64::MIN_POSITIVE)
     }
 
     /// Locates where eigenvalues cross between two equilibria under loads without potential, by bisection of the load.

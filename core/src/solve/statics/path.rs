@@ -204,12 +204,7 @@ impl Statics<'_> {
             return false;
         }
         let Ok(lowest) = self.lowest(&w, more) else { return false };
-        let (nv, position) = (self.model.velocities(), &self.structure.position);
-        let across = |x: &Vec<f64>| {
-            let along: f64 = (0..nv).map(|i| x[position[i]] * rate[i]).sum();
-            let size = |x: &mut dyn Iterator<Item = f64>| x.map(|x| x * x).sum::<f64>().sqrt();
-            along.abs() <= ACROSS * size(&mut x.iter().copied()) * size(&mut rate[..nv].iter().copied())
-        };
+        let across = |x: &Vec<f64>| self.share_of_work(&self.increment(x), &rate) <= ACROSS;
         if !lowest.iter().all(across) {
             return false;
         }
