@@ -1,7 +1,7 @@
 //! Connections that break.
 
 use ropewalk_core::error::positive;
-use ropewalk_core::{Action, BuildError, Event, Marker, Model, State};
+use ropewalk_core::{Action, BuildError, Depends, Event, Marker, Model, State};
 use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, quantity, register_spec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -78,8 +78,8 @@ impl Event for Break {
     fn direction(&self) -> i8 {
         1
     }
-    fn of_forces(&self) -> bool {
-        true
+    fn depends(&self) -> Depends {
+        Depends::OnForces
     }
     fn act(&self, _: &Model, state: &mut State) -> Action {
         state.internal[self.variable] = 1.0;

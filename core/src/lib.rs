@@ -26,7 +26,7 @@ pub use model::column::Column;
 pub use model::constraint::{Constraint, RowKind};
 pub use model::controller::Controller;
 pub use model::dead::{DeadEntry, DeadLoad, DeadPull};
-pub use model::event::{Action, Event};
+pub use model::event::{Action, Depends, Event};
 pub use model::feed::{Feed, MovingBoundary};
 pub use model::input::{Course, Driven, Hold, Input, InputError, Signal};
 pub use model::joint::Joint;

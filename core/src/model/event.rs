@@ -21,6 +21,22 @@ pub enum Action {
     Fail(String),
 }
 
+/// What of a state the function of an event depends on.
+///
+/// Where it is strains or forces, the function is a load over what is allowed, less one: they cost a search each time, and
+/// are searched for from half of the allowed load on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depends {
+    /// Positions and velocities, as they are interpolated inside a step.
+    OnMotion,
+    /// How far something stiff is strained, and how fast. Interpolated positions are off by a share of that: those are
+    /// meant that are in balance, with velocities on the constraints.
+    OnStrains,
+    /// Accelerations and multipliers. Inside a step they don't follow from interpolated positions, and at its end multipliers
+    /// swing about them: they are those of the equations of motion.
+    OnForces,
+}
+
 /// A scalar function of the state whose change of sign is located in time, and what happens there.
 pub trait Event: Send + Sync {
     /// Its name in reports.
@@ -31,11 +47,9 @@ pub trait Event: Send + Sync {
     fn direction(&self) -> i8 {
         0
     }
-    /// Whether it depends on forces: then it is a load over what is allowed, less one. Inside a step forces don't follow from
-    /// interpolated positions, and at its end multipliers swing about them: they are those of the equations of motion, searched
-    /// for from half of the allowed load on.
-    fn of_forces(&self) -> bool {
-        false
+    /// What of the state it depends on.
+    fn depends(&self) -> Depends {
+        Depends::OnMotion
     }
     /// What happens there.
     fn act(&self, model: &Model, state: &mut State) -> Action;

@@ -2,7 +2,7 @@
 
 use super::{Dense, End, Observer, Simulation};
 use crate::model::Model;
-use crate::model::event::{Action, Event};
+use crate::model::event::{Action, Depends, Event};
 use crate::model::line::Quantity;
 use crate::model::remesh::Remeshed;
 use crate::model::state::State;
@@ -34,12 +34,15 @@ pub(super) fn at_start(event: &dyn Event, model: &Model, state: &State) -> f64 {
 }
 
 impl Simulation {
-    /// The first event inside the last step after a time, and when it comes.
-    fn next_event(&mut self, from: f64) -> Option<(usize, f64)> {
+    /// The first event inside the last step after a time, and when it comes; what all of them are at its end goes into
+    /// `ends`.
+    fn next_event(&mut self, from: f64, ends: &mut Vec<f64>) -> Option<(usize, f64)> {
         let mut first: Option<(usize, f64)> = None;
+        ends.clear();
         for k in 0..self.events.len() {
             let (event, before) = (self.events[k].0.clone(), self.events[k].1);
             let after = self.value_at_end(event.as_ref());
+            ends.push(after);
             let crossed = match event.direction() {
                 1 => before < 0.0 && after >= 0.0,
                 -1 => before > 0.0 && after <= 0.0,
@@ -59,32 +62,34 @@ impl Simulation {
     /// The value of an event at the end of the last step.
     fn value_at_end(&mut self, event: &dyn Event) -> f64 {
         let value = event.value(&self.model, &self.state);
-        if !event.of_forces() || value < HALF {
+        let depends = event.depends();
+        if depends == Depends::OnMotion || value < HALF {
             return value;
         }
-        self.look_inside(self.state.t, true);
+        self.look_inside(self.state.t, depends);
         event.value(&self.model, &self.scratch)
     }
 
     /// When an event's function changes its sign between two times with these values: by halves, or, where every look costs
-    /// a search for forces, by false position with the Illinois rule.
+    /// a search, by false position with the Illinois rule.
     fn crossing(
         &mut self,
         event: &dyn Event,
         [mut low, mut high]: [f64; 2],
         [before, after]: [f64; 2],
     ) -> f64 {
-        let forces = event.of_forces();
-        let fine = if forces { 1e-9 } else { 1e-12 };
+        let depends = event.depends();
+        let searches = depends != Depends::OnMotion;
+        let fine = if searches { 1e-9 } else { 1e-12 };
         let tolerance = 4.0 * f64::EPSILON * high.abs() + fine * (high - low);
         let (mut below, mut above, mut last) = (before, after, None);
         while high - low > tolerance {
-            let share = if forces { (below / (below - above)).clamp(1e-3, 0.999) } else { 0.5 };
+            let share = if searches { (below / (below - above)).clamp(1e-3, 0.999) } else { 0.5 };
             let mid = low + share * (high - low);
             if mid <= low || mid >= high {
                 break;
             }
-            self.look_inside(mid, forces);
+            self.look_inside(mid, depends);
             let value = event.value(&self.model, &self.scratch);
             let early = (value > 0.0) == (before > 0.0) && value != 0.0;
             if early {
@@ -100,11 +105,16 @@ impl Simulation {
         high
     }
 
-    /// Sets the scratch state to a time inside the last step, with the forces of the motion there if they are needed.
-    fn look_inside(&mut self, t: f64, forces: bool) {
+    /// Sets the scratch state to a time inside the last step or at its end, with what is asked for of the motion there.
+    fn look_inside(&mut self, t: f64, asked: Depends) {
         Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
+        let found = match asked {
+            Depends::OnMotion => Ok(()),
+            Depends::OnStrains => self.find_strains_with_rates(),
+            Depends::OnForces => self.find_forces(),
+        };
         // where none are found, the interpolated ones have to do
-        if forces && self.find_forces().is_err() {
+        if found.is_err() {
             Dense::new(&self.model, &self.previous, &self.state).at(t, &mut self.scratch);
         }
     }
@@ -112,9 +122,9 @@ impl Simulation {
     /// Lets the events inside the last step act, one after the other, up to the first that changes something: the state
     /// moves to just before it.
     pub(super) fn locate(&mut self, observer: &mut dyn Observer) -> Option<Fired> {
-        let mut from = self.previous.t;
-        while let Some((event, t)) = self.next_event(from) {
-            self.look_inside(t, self.events[event].0.of_forces());
+        let (mut from, mut ends) = (self.previous.t, Vec::new());
+        while let Some((event, t)) = self.next_event(from, &mut ends) {
+            self.look_inside(t, self.events[event].0.depends());
             self.scratch.control.clone_from(&self.state.control);
             self.model.remember(&mut self.scratch);
             for (k, (other, value)) in self.events.iter_mut().enumerate() {
@@ -136,9 +146,12 @@ impl Simulation {
             return Some(Fired { event, action, after, changed });
         }
         self.model.remember(&mut self.state);
-        for k in 0..self.events.len() {
-            let event = self.events[k].0.clone();
-            self.events[k].1 = self.value_at_end(event.as_ref());
+        for ((event, value), end) in self.events.iter_mut().zip(&ends) {
+            // what is searched for isn't searched for twice
+            *value = match event.depends() {
+                Depends::OnMotion => event.value(&self.model, &self.state),
+                Depends::OnStrains | Depends::OnForces => *end,
+            };
         }
         None
     }

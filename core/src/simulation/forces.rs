@@ -44,10 +44,15 @@ impl Simulation {
         done
     }
 
-    /// Gives the scratch state, which lies inside the last step or at its end, the strains of the motion.
+    /// Gives the scratch state the strains of the motion, which it has at the end of the last step.
     pub(super) fn find_strains(&mut self) -> Result<(), SolveError> {
+        if self.scratch.t < self.state.t { self.find_strains_with_rates() } else { Ok(()) }
+    }
+
+    /// The same with velocities on the constraints: at the end of a step too they may be off.
+    pub(super) fn find_strains_with_rates(&mut self) -> Result<(), SolveError> {
         // between the stages of Radau IIA they are as good as there
-        if self.state.control.stages[0].is_empty() && self.scratch.t < self.state.t {
+        if self.state.control.stages[0].is_empty() {
             self.moves_into_balance(false)?;
         }
         Ok(())
@@ -65,8 +70,8 @@ impl Simulation {
         let begin = self.work.clocks.start();
         let mut aside = self.take_aside()?;
         let start = self.scratch.clone();
-        let there =
-            self.balance(weights, &mut aside) && (!forces || self.find_accelerations(&mut aside).is_ok());
+        let there = self.balance(weights, forces, &mut aside)
+            && (!forces || self.find_accelerations(&mut aside).is_ok());
         if !there {
             self.scratch = start;
         }
@@ -82,8 +87,8 @@ impl Simulation {
     /// A step of its own, from the start of the last one to here, would do for most. But it may be much shorter, and would
     /// see what the longer steps leave of velocities as the waves that those don't resolve.
     ///
-    /// Whether the iteration came to its end; what is left then stands in the workspace.
-    fn balance(&mut self, weights: Weights, aside: &mut Workspace) -> bool {
+    /// Whether the iteration came to its end; what is left then stands in the workspace, if `forces` are asked for.
+    fn balance(&mut self, weights: Weights, forces: bool, aside: &mut Workspace) -> bool {
         let tolerance = self.integrator.options().force_tolerance;
         // the end of a step is as balanced as it is
         let inside = self.scratch.t < self.state.t;
@@ -99,6 +104,9 @@ impl Simulation {
             let factors = if own && aside.factored.is_some() { &mut *aside } else { &mut *work };
             if move_velocities(model, s, factors).is_err() {
                 break;
+            }
+            if !inside && !forces {
+                return true;
             }
             model.assemble(&s.at(), &s.lambda, renew.then_some(weights), &mut aside.system);
             let residual = &aside.system.residual;

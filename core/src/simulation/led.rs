@@ -30,16 +30,24 @@ impl Simulation {
             return false;
         }
         self.scratch.clone_from(&self.state);
-        self.lead_with_forces().is_ok()
+        self.lead_with(self.is_of_bodies()).is_ok()
     }
 
     fn is_of_bodies(&self) -> bool {
         self.work.norms.groups.iter().all(|group| group.single)
     }
 
-    fn lead_with_forces(&mut self) -> Result<(), SolveError> {
-        self.lead()?;
-        if self.is_of_bodies() { self.find_forces() } else { Ok(()) }
+    /// Leads the scratch state to where motions want it, and finds its forces if they are asked for.
+    ///
+    /// # Errors
+    /// A matrix is singular.
+    pub(super) fn lead_with(&mut self, forces: bool) -> Result<(), SolveError> {
+        // at the end of a step, forces by its factors bring velocities onto the constraints as well
+        let inside = self.scratch.t < self.state.t;
+        if !forces || inside || self.weights().is_none() {
+            self.lead()?;
+        }
+        if forces { self.find_forces() } else { Ok(()) }
     }
 
     /// What the trapezoidal rule misses of the work of motions over the last step, or its beginning, with the energies at its
@@ -75,7 +83,7 @@ impl Simulation {
             return None;
         }
         let kept = self.scratch.clone();
-        let found = self.lead_with_forces().is_ok().then(|| {
+        let found = self.lead_with(true).is_ok().then(|| {
             let then = self.model.power(&self.scratch.at(), &self.scratch.lambda);
             (then, self.missed(span, [begin, then], energy))
         });
@@ -93,7 +101,7 @@ impl Simulation {
     ) -> Option<Power> {
         let middle = 0.5 * (from + to);
         Dense::new(&self.model, &self.previous, &self.state).at(middle, &mut self.scratch);
-        self.lead_with_forces().ok()?;
+        self.lead_with(true).ok()?;
         let there = self.model.power(&self.scratch.at(), &self.scratch.lambda);
         let rough = Power::between(ends[0], ends[1], 0.5);
         let off = (to - from) * (there.supplied - there.dissipated - rough.supplied + rough.dissipated).abs();
@@ -139,7 +147,7 @@ impl Simulation {
     ///
     /// # Errors
     /// A matrix is singular.
-    pub(super) fn lead(&mut self) -> Result<(), SolveError> {
+    fn lead(&mut self) -> Result<(), SolveError> {
         if !self.model.is_led() {
             return Ok(());
         }

@@ -448,11 +448,8 @@ impl Simulation {
             }
         }
         let (t, forces, strains) = (self.scratch.t, observer.needs_forces(), observer.needs_strains());
-        let found = self.lead().and_then(|()| match forces {
-            true => self.find_forces(),
-            false if strains => self.find_strains(),
-            false => Ok(()),
-        });
+        let found = self.lead_with(forces);
+        let found = found.and_then(|()| if strains && !forces { self.find_strains() } else { Ok(()) });
         let failed = |source| StepError::Linear { t, source, unknown: "the accelerations for output".into() };
         found.map_err(failed)?;
         self.show_balance(observer.needs_energy());

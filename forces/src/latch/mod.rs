@@ -7,7 +7,7 @@ pub use spec::{FloorSpec, LatchSpec};
 use ropewalk_core::held::{Held, Pull, delta, dofs, pull};
 use ropewalk_core::rotation::M3;
 use ropewalk_core::{
-    Action, Assembly, At, Energy, Event, Foresees, Model, Pattern, Power, State, Term, V3, dot,
+    Action, Assembly, At, Depends, Energy, Event, Foresees, Model, Pattern, Power, State, Term, V3, dot,
 };
 
 /// A plane that pushes back what has left its seat, [`Latch::floor`].
@@ -207,8 +207,8 @@ impl Event for Release {
     fn direction(&self) -> i8 {
         1
     }
-    fn of_forces(&self) -> bool {
-        true
+    fn depends(&self) -> Depends {
+        Depends::OnStrains
     }
     fn act(&self, _: &Model, state: &mut State) -> Action {
         // the located time is right to rounding, and so is the load there
