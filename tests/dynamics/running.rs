@@ -147,6 +147,16 @@ fn a_failed_step_leaves_the_state_as_it_was() {
 }
 
 #[test]
+fn a_run_without_an_end_is_refused() {
+    for duration in [f64::INFINITY, f64::NAN] {
+        let options = Options::default();
+        let error = Simulation::new(swinging().build().expect("model"), &options, duration).err();
+        let error = error.expect("must be refused").to_string();
+        assert!(error.contains("the length of the run is a finite time"), "{error}");
+    }
+}
+
+#[test]
 fn energy_is_accounted_for() {
     let balance = |h: f64| {
         let mut s = Simulation::new(everything().build().expect("model"), &fixed(h), 1.0).expect("start");

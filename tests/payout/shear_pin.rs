@@ -4,8 +4,8 @@ use crate::program::run;
 use ropewalk::{History, RunOptions, SceneFile, bundled, simulate};
 use ropewalk_constraints::motion::{SpeedTableSpec, StraightSpec};
 use ropewalk_constraints::{BreakSpec, DistanceSpec, DrivingSpec, SphericalSpec};
-use ropewalk_core::Spot;
 use ropewalk_core::integrator::{Options, Stepping};
+use ropewalk_core::{Simulation, Spot};
 use ropewalk_elements::rigid_chain::LinkSection;
 use ropewalk_elements::{CableSpec, PointMassSpec, RigidChainSpec, Section};
 use ropewalk_forces::{DragSpec, GravitySpec, LatchSpec};
@@ -204,6 +204,19 @@ fn a_pin_breaks_at_its_strength_at_a_time_that_is_located() {
     let pull = history.column("pin.magnitude").expect("pull");
     assert!(pull[k + 1..].iter().all(|f| *f == 0.0), "{:?}", &pull[k..k + 4]);
     assert!(pull[k - 2] > 0.95 * mass * (g + 5.0));
+}
+
+#[test]
+fn a_latch_near_its_hold_is_looked_at_once_a_step() {
+    let model = short("25 kn", &[]).build().unwrap_or_else(|e| panic!("{e}"));
+    let mut s = Simulation::new(model, &Options::default(), 3.0).unwrap_or_else(|e| panic!("{e}"));
+    s.work.profile();
+    s.advance(0.1, 0.1, &mut ()).unwrap_or_else(|e| panic!("{e}"));
+    let calls = |of: &str| s.work.times(&s.model).iter().find(|(label, ..)| label == of).map_or(0, |x| x.1);
+    let (looks, steps) = (calls("forces for output"), calls("audit of energy"));
+    println!("{looks} looks in {steps} steps");
+    // and some for each release
+    assert!(steps > 100 && looks > 0 && looks <= steps + 50, "{looks} looks in {steps} steps");
 }
 
 #[test]

@@ -337,3 +337,46 @@ fn beds_where_no_wave_feels_them_and_grids_that_end_too_soon_are_told() {
     assert!(told(&grid(3.0), 30.0, "up to 2.5") && told(&grid(3.0), 30.0, beyond));
     assert!(!told(&grid(10.0), 30.0, beyond));
 }
+
+/// A slack line slides down a slope and folds where friction comes only after the search.
+#[test]
+fn where_a_line_folds_without_friction_the_error_says_what_was_left_out() {
+    let error = |equilibrium: &str| {
+        let text = format!(
+            r#"
+            run = {{ analysis = "statics" }}
+            [[elements]]
+            type = "cable"
+            name = "line"
+            points = [[0, 0, 0], [150, 0, 57.5]]
+            length = 193
+            elements = 60
+            section = {{ mass = 10, ea = 5e7, diameter = 0.1 }}
+            [[constraints]]
+            type = "spherical"
+            name = "anchor"
+            marker = "line.start"
+            [[constraints]]
+            type = "spherical"
+            name = "fairlead"
+            marker = "line.end"
+            [[forces]]
+            type = "gravity"
+            [[forces]]
+            type = "bed"
+            point = [0, 0, -0.05]
+            slope = 0.15
+            friction = {{ mu = 0.5, equilibrium = "{equilibrium}" }}
+            "#
+        );
+        let file = SceneFile::parse(&text, "bed", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+        simulate(&file.into_scene()).err().expect("must fail").to_string()
+    };
+    for equilibrium in ["none", "laid", "pulled"] {
+        let e = error(equilibrium);
+        assert!(
+            e.contains("without the friction of `bed`") && e.contains("a little bending stiffness"),
+            "{e}"
+        );
+    }
+}

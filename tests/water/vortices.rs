@@ -279,3 +279,29 @@ fn what_is_wrong_with_vortices_is_said() {
         assert!(error.contains(said), "{said}: {error}");
     }
 }
+
+#[test]
+fn wakes_at_rest_are_no_friction_that_an_equilibrium_leaves_out() {
+    let text = r#"
+        run = { duration = 0.1, output = 0.1, from_equilibrium = true }
+        water = { current = [0.5, 0, 0] }
+        [[elements]]
+        type = "cable"
+        name = "line"
+        points = [[0, 0, -10], [0, 0, -60]]
+        elements = 10
+        section = { mass = 10, ea = 5e6, diameter = 0.05 }
+        [[constraints]]
+        type = "spherical"
+        name = "top"
+        marker = "line.start"
+        [[forces]]
+        type = "gravity"
+        [[forces]]
+        type = "drag"
+        [[forces]]
+        type = "vortex_shedding"
+        "#;
+    let h = simulate(parse(text).scene()).unwrap_or_else(|e| panic!("{e}"));
+    assert!(!h.warnings.iter().any(|w| w.contains("friction")), "{:?}", h.warnings);
+}

@@ -43,6 +43,10 @@ pub trait Remembers {
     fn rests(&self) -> bool {
         false
     }
+    /// Whether it takes hold of the first equilibrium, which is one without it.
+    fn takes_hold(&self) -> bool {
+        false
+    }
     /// Which way what it resists goes at equilibria, if it takes part in those so: a word such as `hoisting`.
     fn sliding(&self) -> Option<&'static str> {
         None

@@ -232,6 +232,9 @@ impl Remembers for Contact {
     fn rests(&self) -> bool {
         self.law.friction.is_some_and(|f| f.equilibrium != AtRest::None)
     }
+    fn takes_hold(&self) -> bool {
+        self.rests()
+    }
     fn settle(&self, at: &At<'_>, memory: &mut [f64]) -> bool {
         match self.law.friction.map(|f| f.equilibrium) {
             None | Some(AtRest::None) => return false,

@@ -262,6 +262,10 @@ impl Foresees for VortexShedding {
 }
 
 impl Remembers for VortexShedding {
+    /// Wakes of what is at rest don't swing.
+    fn rests(&self) -> bool {
+        true
+    }
     fn remember(&self, at: &At<'_>, memory: &mut [f64]) {
         let Some(own) = memory.get_mut(self.memory..) else { return };
         let mut own = own.chunks_exact_mut(MEMORY).enumerate();

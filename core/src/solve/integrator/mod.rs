@@ -44,7 +44,7 @@ impl Options {
     /// [`Options::horizon`] says otherwise.
     ///
     /// # Errors
-    /// The options are wrong, or the scheme doesn't suit the model.
+    /// The options are wrong, the run has no end, or the scheme doesn't suit the model.
     pub fn integrator(&self, model: &Model, duration: f64) -> Result<Box<dyn Integrator>, StepError> {
         self.check()?;
         self.check_work(model, duration)?;

@@ -180,8 +180,15 @@ impl Options {
         }
     }
 
-    /// Refuses steps so short that the run would surely take longer than a year.
+    /// Refuses a run without an end, and steps so short that it would surely take longer than a year.
     pub(super) fn check_work(&self, model: &Model, duration: f64) -> Result<(), BuildError> {
+        if !duration.is_finite() {
+            let message = format!(
+                "the length of the run is a finite time, by which steps are bounded, but is {duration} s: guess it where it \
+                 isn't known"
+            );
+            return Err(BuildError::at("duration", message));
+        }
         let (name, h) = match self.stepping {
             Stepping::Fixed { h } => ("h", h),
             Stepping::Controlled { .. } => ("h_max", self.limits(duration).most),

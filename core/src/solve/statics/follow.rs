@@ -34,7 +34,7 @@ impl Statics<'_> {
         self.model.relabel(state);
         self.run_material(state)?;
         let before = state.clone();
-        let found = self.seek(state, cold)?;
+        let found = self.seek(state, cold).map_err(|e| if cold { self.without_friction(e) } else { e })?;
         self.refuse_unsteady(state).inspect_err(|_| state.clone_from(&before))?;
         let mut found = found;
         if let Some(why) = self.model.lost(&state.at()) {
@@ -47,11 +47,34 @@ impl Statics<'_> {
                 break;
             }
             let more = self.search(state, false, false, true).or_else(|_| self.seek(state, true));
+            let more = more.map_err(|e| {
+                let why = format!("{} once friction has taken hold as its `equilibrium` says", e.why);
+                StaticsError { why, ..e }
+            });
             found.add(&more.inspect_err(|_| state.clone_from(&before))?);
             // dry friction has no linear motion about it that could be told to swing ever wider
             found.flutter = 0.0;
         }
         Ok(found)
+    }
+
+    /// Why nothing was found, where dry friction would have come later: on a slope a slack line may slide and fold without it.
+    fn without_friction(&self, e: StaticsError) -> StaticsError {
+        let dry = self
+            .model
+            .terms()
+            .iter()
+            .filter(|term| term.remembers().is_some_and(|r| !r.rests() || r.takes_hold()));
+        let labels: Vec<String> = dry.map(|term| format!("`{}`", term.label())).collect();
+        if labels.is_empty() || e.iterations == 0 || e.interrupted {
+            return e;
+        }
+        let why = format!(
+            "{}, without the friction of {}, which takes hold of an equilibrium that was found",
+            e.why,
+            labels.join(", ")
+        );
+        StaticsError { why, ..e }
     }
 
     fn seek(&mut self, state: &mut State, cold: bool) -> Result<Found, StaticsError> {

@@ -326,6 +326,9 @@ impl Remembers for LineContact {
     fn rests(&self) -> bool {
         self.law.friction.is_some_and(|f| f.equilibrium != AtRest::None)
     }
+    fn takes_hold(&self) -> bool {
+        self.rests()
+    }
     fn settle(&self, at: &At<'_>, memory: &mut [f64]) -> bool {
         if self.rests() {
             self.remember(at, memory);
