@@ -10,12 +10,15 @@ use crate::model::state::State;
 const FAR: f64 = 1e-3;
 /// Part of the move that they may leave unexplained.
 pub(super) const UNEXPLAINED: f64 = 0.1;
+/// Part of the move that they may differ by: two that differ may explain a leap by chance.
+const BENT: f64 = 1.0;
 /// Longest step on the way that was leapt over, in parts of the leap.
 const LEAP_SHARE: f64 = 0.5;
 
 impl Statics<'_> {
     /// The part of a move between two equilibria that the tangents of the path at both ends leave unexplained, of the part of the
-    /// model where it is largest; nothing where hardly anything moves, all of it where the path has no tangent.
+    /// model where it is largest, or as much as they differ by; nothing where hardly anything moves, all of it where the path has
+    /// no tangent.
     pub(super) fn unexplained(&mut self, from: &State, to: &State) -> f64 {
         let mut moved = vec![0.0; self.model.velocities()];
         difference(self.model.nodes(), &from.q, &to.q, &mut moved);
@@ -29,12 +32,18 @@ impl Statics<'_> {
         // beyond the end loads may be others
         let back = Way { sign: -way.sign, ..way };
         let Ok(end) = self.point(to.clone(), None, back) else { return f64::INFINITY };
-        for p in [&start, &end] {
-            // half of the trapezoidal rule
-            moved.iter_mut().zip(&p.slope).for_each(|(m, s)| *m -= 0.5 * dt * s / p.rate);
-        }
-        let shares = self.moves(&moved).into_iter().zip(sizes).filter(|(_, size)| *size > FAR);
-        shares.fold(0.0, |most, (left, size)| if left <= most * size { most } else { left / size })
+        let [first, last] =
+            [&start, &end].map(|p| p.slope.iter().map(|s| dt * s / p.rate).collect::<Vec<_>>());
+        let both = || first.iter().zip(&last);
+        let bend: Vec<f64> = both().map(|(a, b)| UNEXPLAINED / BENT * (a - b)).collect();
+        // the trapezoidal rule
+        moved.iter_mut().zip(both()).for_each(|(m, (a, b))| *m -= 0.5 * (a + b));
+        let doubts = self.moves(&moved).into_iter().zip(self.moves(&bend)).zip(sizes);
+        doubts.filter(|(_, size)| *size > FAR).fold(0.0, |most, ((left, bend), size)| {
+            let doubt = left.max(bend) / size;
+            // max() would swallow a NaN
+            if (left + bend).is_nan() { f64::INFINITY } else { doubt.max(most) }
+        })
     }
 
     /// How far an increment moves the model, in parts of its reference length, and each line in parts of its own.

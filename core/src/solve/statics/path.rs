@@ -188,9 +188,15 @@ impl Statics<'_> {
             return false;
         }
         // round a limit of the load, or where it was never quite straight, it would go on like that, too
-        let Some(soft) = self.soft(&come.state, 1) else { return false };
-        let into = self.inner(&here.slope, &soft[0]).abs() > ALONG * self.inner(&soft[0], &soft[0]).sqrt();
-        into && self.work_along(&soft[0], &come.state, way).is_some_and(|work| work <= NO_WORK)
+        let Some(soft) = self.soft(&come.state, MOST_BRANCHES) else { return false };
+        let mut into = vec![0.0; nv];
+        for x in &soft {
+            // what moves nothing that has a place takes no part
+            let part = self.inner(&here.slope, x) / self.inner(x, x).max(f64::MIN_POSITIVE);
+            into.iter_mut().zip(x).for_each(|(into, x)| *into += part * x);
+        }
+        self.inner(&into, &into).sqrt() > ALONG
+            && self.work_along(&into, &come.state, way).is_some_and(|work| work <= NO_WORK)
     }
 
     /// Next to a bifurcation rounding bends the path towards the one that branches off. Holds the softest direction, or one
