@@ -341,39 +341,17 @@ fn beds_where_no_wave_feels_them_and_grids_that_end_too_soon_are_told() {
 /// A slack line slides down a slope and folds where friction comes only after the search.
 #[test]
 fn where_a_line_folds_without_friction_the_error_says_what_was_left_out() {
-    let error = |equilibrium: &str| {
-        let text = format!(
-            r#"
-            run = {{ analysis = "statics" }}
-            [[elements]]
-            type = "cable"
-            name = "line"
-            points = [[0, 0, 0], [150, 0, 57.5]]
-            length = 193
-            elements = 60
-            section = {{ mass = 10, ea = 5e7, diameter = 0.1 }}
-            [[constraints]]
-            type = "spherical"
-            name = "anchor"
-            marker = "line.start"
-            [[constraints]]
-            type = "spherical"
-            name = "fairlead"
-            marker = "line.end"
-            [[forces]]
-            type = "gravity"
-            [[forces]]
-            type = "bed"
-            point = [0, 0, -0.05]
-            slope = 0.15
-            friction = {{ mu = 0.5, equilibrium = "{equilibrium}" }}
-            "#
-        );
-        let file = SceneFile::parse(&text, "bed", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
-        simulate(&file.into_scene()).err().expect("must fail").to_string()
-    };
+    let case = serde_json::json!({
+        "sections": [{ "L": 193.0, "w": 100.0, "EA": 5e7 }],
+        "load_after_section": [],
+        "bed_slope_deg": 8.6,
+        "fairlead": [150.0, 57.5],
+        "mu": 0.5,
+    });
     for equilibrium in ["none", "laid", "pulled"] {
-        let e = error(equilibrium);
+        let text = line(&case, 60, 1e6, equilibrium);
+        let file = SceneFile::parse(&text, "bed", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let e = simulate(&file.into_scene()).err().expect("must fail").to_string();
         assert!(
             e.contains("without the friction of `bed`") && e.contains("a little bending stiffness"),
             "{e}"

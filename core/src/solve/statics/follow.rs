@@ -48,7 +48,7 @@ impl Statics<'_> {
             }
             let more = self.search(state, false, false, true).or_else(|_| self.seek(state, true));
             let more = more.map_err(|e| {
-                let why = format!("{} once friction has taken hold as its `equilibrium` says", e.why);
+                let why = format!("{}, now that friction has taken hold as its `equilibrium` says", e.why);
                 StaticsError { why, ..e }
             });
             found.add(&more.inspect_err(|_| state.clone_from(&before))?);
