@@ -22,8 +22,8 @@ impl Statics<'_> {
     pub(super) fn unexplained(&mut self, from: &State, to: &State) -> f64 {
         let mut moved = vec![0.0; self.model.velocities()];
         difference(self.model.nodes(), &from.q, &to.q, &mut moved);
-        let sizes = self.moves(&moved);
-        if !(self.options.stable && self.judged.potential && sizes.iter().any(|x| *x > FAR)) {
+        let far = self.moves(&moved).iter().any(|x| *x > FAR);
+        if !(self.options.stable && self.judged.potential && far) {
             return 0.0;
         }
         let dt = to.t - from.t;
@@ -34,11 +34,16 @@ impl Statics<'_> {
         let Ok(end) = self.point(to.clone(), None, back) else { return f64::INFINITY };
         let [first, last] =
             [&start, &end].map(|p| p.slope.iter().map(|s| dt * s / p.rate).collect::<Vec<_>>());
-        let both = || first.iter().zip(&last);
+        self.doubt_of(&moved, [&first, &last])
+    }
+
+    /// The same of a move by what the tangents at both ends would make of all of it.
+    pub(super) fn doubt_of(&self, moved: &[f64], [first, last]: [&[f64]; 2]) -> f64 {
+        let both = || first.iter().zip(last);
         let bend: Vec<f64> = both().map(|(a, b)| UNEXPLAINED / BENT * (a - b)).collect();
         // the trapezoidal rule
-        moved.iter_mut().zip(both()).for_each(|(m, (a, b))| *m -= 0.5 * (a + b));
-        let doubts = self.moves(&moved).into_iter().zip(self.moves(&bend)).zip(sizes);
+        let left: Vec<f64> = moved.iter().zip(both()).map(|(m, (a, b))| m - 0.5 * (a + b)).collect();
+        let doubts = self.moves(&left).into_iter().zip(self.moves(&bend)).zip(self.moves(moved));
         doubts.filter(|(_, size)| *size > FAR).fold(0.0, |most, ((left, bend), size)| {
             let doubt = left.max(bend) / size;
             // max() would swallow a NaN

@@ -9,6 +9,7 @@
 //! Riks (1979), Int. J. Solids Struct. 15, 529; Crisfield (1981), Comput. Struct. 13, 55.
 
 use super::critical::ALONG;
+use super::leap::UNEXPLAINED;
 use super::outcome::{Critical, Found, Point, StaticsError};
 use super::problem::Statics;
 use super::stability::MARGIN;
@@ -23,6 +24,8 @@ pub(super) const LONGEST: f64 = 0.1;
 const SHORTEST: f64 = 1e-8;
 /// Step below which any path is straight to rounding, and may bend by any angle.
 const STRAIGHT: f64 = 1e-6;
+/// Step from which on the tangent is one that the path was come by.
+const STEADY: f64 = 1e-3;
 /// Step below which paths that it leads between are one.
 const MEET: f64 = 1e-7;
 /// Least cosine between neighbouring tangents.
@@ -39,6 +42,8 @@ const MOST_BRANCHES: usize = 3;
 pub(super) const ACROSS: f64 = 1e-3;
 /// The same before a path branches off that is straight but for rounding.
 const NO_WORK: f64 = 1e-8;
+/// Least share of a turn, squared, that a direction has in which the path turns.
+const TURN: f64 = 1e-2;
 /// Loads that are the same, where a path branches off and turns round, in parts of the whole.
 const SAME: f64 = 1e-4;
 
@@ -156,10 +161,12 @@ impl Statics<'_> {
                 continue;
             }
             here = next;
-            if ds >= STRAIGHT {
-                if self.has_branched(&here, &come, way) {
-                    passed.push(self.critical_between(&here, &here, &come, way));
-                }
+            let turned = ds >= STRAIGHT && self.cosine(&here, &come, way) < BEND;
+            if turned && self.has_branched(&here, &come, way) {
+                passed.push(self.critical_between(&here, &here, &come, way));
+            }
+            // little by little a path would turn unseen
+            if turned || ds >= STEADY {
                 come.clone_from(&here);
             }
             ds = match iterations {
@@ -172,12 +179,9 @@ impl Statics<'_> {
         Err(self.fail(state, "the path of equilibria goes on for ever", found.iterations))
     }
 
-    /// Whether a path that bends at once has gone over to one that branches off: the way that was come by would go on, unstable.
+    /// Whether a path that has turned since a point has gone over to one that branches off: the way that was come by would go
+    /// on, unstable.
     fn has_branched(&mut self, here: &Point, come: &Point, way: Way) -> bool {
-        let cosine = self.inner(&here.slope, &come.slope) + here.rate * come.rate / way.span.powi(2);
-        if cosine >= BEND {
-            return false;
-        }
         let mut on = here.state.clone();
         let nv = self.model.velocities();
         let move_on: Vec<f64> = come.slope[..nv].iter().map(|x| FIRST * x).collect();
@@ -189,14 +193,25 @@ impl Statics<'_> {
         }
         // round a limit of the load, or where it was never quite straight, it would go on like that, too
         let Some(soft) = self.soft(&come.state, MOST_BRANCHES) else { return false };
+        let cosine = self.cosine(here, come, way);
+        let turn: Vec<f64> = here.slope.iter().zip(&come.slope).map(|(h, c)| h - cosine * c).collect();
         let mut into = vec![0.0; nv];
         for x in &soft {
             // what moves nothing that has a place takes no part
-            let part = self.inner(&here.slope, x) / self.inner(x, x).max(f64::MIN_POSITIVE);
-            into.iter_mut().zip(x).for_each(|(into, x)| *into += part * x);
+            let square = self.inner(x, x).max(f64::MIN_POSITIVE);
+            let part = self.inner(&turn, x) / square;
+            // what the path hardly turns to only lends the load's work to what it does
+            if part * part * square > TURN * self.inner(&turn, &turn) {
+                into.iter_mut().zip(x).for_each(|(into, x)| *into += part * x);
+            }
         }
-        self.inner(&into, &into).sqrt() > ALONG
+        self.inner(&into, &into).sqrt() > ALONG * (1.0 - cosine * cosine).max(0.0).sqrt()
             && self.work_along(&into, &come.state, way).is_some_and(|work| work <= NO_WORK)
+    }
+
+    /// Cosine between the tangents of two points.
+    fn cosine(&self, a: &Point, b: &Point, way: Way) -> f64 {
+        self.inner(&a.slope, &b.slope) + a.rate * b.rate / way.span.powi(2)
     }
 
     /// Next to a bifurcation rounding bends the path towards the one that branches off. Holds the softest direction, or one
@@ -236,7 +251,8 @@ impl Statics<'_> {
         let more = self.search(&mut there, false, false, false).ok()?;
         found.add(&more);
         let near = self.distance(&guess, &there.q) <= 0.1 * self.inner(&move_on, &move_on).sqrt() + 1e-6;
-        (self.unstable == 0 && near).then_some(there)
+        let arrived = self.unstable == 0 && near && self.unexplained(&here.state, &there) <= UNEXPLAINED;
+        arrived.then_some(there)
     }
 
     /// The stable equilibrium at the end of the load, which lies between two points of the path: half a step that Newton's
@@ -332,8 +348,11 @@ impl Statics<'_> {
                 let went =
                     (self.inner(&moved, &moved) + ((there.t - here.state.t) / way.span).powi(2)).sqrt();
                 let next = self.point(there, Some(here), way).ok()?;
-                let cosine = self.inner(&here.slope, &next.slope) + here.rate * next.rate / way.span.powi(2);
-                return (went <= 2.5 * ds && (cosine >= BEND || ds < STRAIGHT)).then_some((next, k));
+                let cosine = self.cosine(here, &next, way);
+                let [first, last] =
+                    [here, &next].map(|p| p.slope.iter().map(|s| went * s).collect::<Vec<_>>());
+                let smooth = || cosine >= BEND && self.doubt_of(&moved, [&first, &last]) <= UNEXPLAINED;
+                return (went <= 2.5 * ds && (ds < STRAIGHT || smooth())).then_some((next, k));
             }
             before = size;
         }
