@@ -182,20 +182,10 @@ impl Statics<'_> {
     /// Whether a path that has turned since a point has gone over to one that branches off: the way that was come by would go
     /// on, unstable.
     fn has_branched(&mut self, here: &Point, come: &Point, way: Way) -> bool {
-        let mut on = here.state.clone();
-        let nv = self.model.velocities();
-        let move_on: Vec<f64> = come.slope[..nv].iter().map(|x| FIRST * x).collect();
-        retract(self.model.nodes(), &here.state.q, &move_on, &mut on.q);
-        on.lambda.iter_mut().zip(&come.slope[nv..]).for_each(|(l, s)| *l += FIRST * s);
-        on.t += FIRST * come.rate;
-        if !self.point(on, None, way).is_ok_and(|p| p.unstable > 0) {
-            return false;
-        }
-        // round a limit of the load, or where it was never quite straight, it would go on like that, too
         let Some(soft) = self.soft(&come.state, MOST_BRANCHES) else { return false };
         let cosine = self.cosine(here, come, way);
         let turn: Vec<f64> = here.slope.iter().zip(&come.slope).map(|(h, c)| h - cosine * c).collect();
-        let mut into = vec![0.0; nv];
+        let mut into = vec![0.0; self.model.velocities()];
         for x in &soft {
             // what moves nothing that has a place takes no part
             let square = self.inner(x, x).max(f64::MIN_POSITIVE);
@@ -207,6 +197,20 @@ impl Statics<'_> {
         }
         self.inner(&into, &into).sqrt() > ALONG * (1.0 - cosine * cosine).max(0.0).sqrt()
             && self.work_along(&into, &come.state, way).is_some_and(|work| work <= NO_WORK)
+            && self.would_go_on(come, &into, here, way)
+    }
+
+    /// Whether a path would go on, unstable, if it were kept from a direction in which it turned before it came here.
+    fn would_go_on(&mut self, come: &Point, into: &[f64], here: &Point, way: Way) -> bool {
+        let step = self.distance(&come.state.q, &here.state.q).hypot((here.state.t - come.state.t) / way.span);
+        let kept = self.free.len();
+        let w = self.weights();
+        let mut held = vec![0.0; self.structure.n];
+        into.iter().zip(&self.structure.position).for_each(|(x, &p)| held[p] = w[p] * x);
+        self.free.push(held);
+        let on = [FIRST, 2.0 * step].map(|ds| self.step(come, ds, way));
+        self.free.truncate(kept);
+        on.into_iter().flatten().any(|(on, _)| self.point(on.state, None, way).is_ok_and(|p| p.unstable > 0))
     }
 
     /// Cosine between the tangents of two points.
