@@ -9,6 +9,7 @@ pub mod controllers;
 mod current;
 pub mod document;
 mod doubts;
+mod elsewhere;
 pub mod file;
 pub mod functions;
 mod inputs;

@@ -1,6 +1,7 @@
 //! From a scene file to a [`Scene`], and from what is wrong with the scene back to the place in the file.
 
 use crate::document::{Document, Fault, Format, did_you_mean, quoted, read_text};
+use crate::elsewhere::pointed;
 use crate::functions;
 use crate::scene::{GRAVITY, Scene, SceneError};
 use crate::spec::SpecKind;
@@ -139,26 +140,7 @@ impl SceneFile {
     fn of(mut document: Document, name: String) -> Result<Self, Fault> {
         functions::name_types(&mut document);
         document.name_sections()?;
-        let d = &mut document;
-        let scene = Scene {
-            title: d.take("title")?.unwrap_or_default(),
-            description: d.take("description")?.unwrap_or_default(),
-            gravity: d.take("gravity")?.map_or(GRAVITY, |Acceleration(g)| g),
-            water: d.take("water")?,
-            air: d.take("air")?,
-            run: d.take("run")?.unwrap_or_default(),
-            solver: d.take("solver")?.unwrap_or_default(),
-            statics: d.take("statics")?.unwrap_or_default(),
-            elements: parts(d, SpecKind::Element)?,
-            constraints: parts(d, SpecKind::Constraint)?,
-            forces: parts(d, SpecKind::Force)?,
-            motions: parts(d, SpecKind::Motion)?,
-            records: parts(d, SpecKind::Record)?,
-            inputs: d.take_list(SpecKind::Input.list())?.into_iter().map(|(input, _)| input).collect(),
-            controllers: parts(d, SpecKind::Controller)?,
-            processes: parts(d, SpecKind::Process)?,
-        };
-        document.finish()?;
+        let scene = read(&mut document).map_err(pointed)?;
         Ok(SceneFile { name, document, scene })
     }
 
@@ -250,6 +232,30 @@ impl SceneFile {
         }
         table.iter().find_map(|(key, _)| self.inside(&format!("{path}.{}", key.name), field))
     }
+}
+
+/// Reads the sections of a scene.
+fn read(d: &mut Document) -> Result<Scene, Fault> {
+    let scene = Scene {
+        title: d.take("title")?.unwrap_or_default(),
+        description: d.take("description")?.unwrap_or_default(),
+        gravity: d.take("gravity")?.map_or(GRAVITY, |Acceleration(g)| g),
+        water: d.take("water")?,
+        air: d.take("air")?,
+        run: d.take("run")?.unwrap_or_default(),
+        solver: d.take("solver")?.unwrap_or_default(),
+        statics: d.take("statics")?.unwrap_or_default(),
+        elements: parts(d, SpecKind::Element)?,
+        constraints: parts(d, SpecKind::Constraint)?,
+        forces: parts(d, SpecKind::Force)?,
+        motions: parts(d, SpecKind::Motion)?,
+        records: parts(d, SpecKind::Record)?,
+        inputs: d.take_list(SpecKind::Input.list())?.into_iter().map(|(input, _)| input).collect(),
+        controllers: parts(d, SpecKind::Controller)?,
+        processes: parts(d, SpecKind::Process)?,
+    };
+    d.finish()?;
+    Ok(scene)
 }
 
 /// The list of a scene that holds this kind of part.

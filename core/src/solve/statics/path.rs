@@ -202,7 +202,8 @@ impl Statics<'_> {
 
     /// Whether a path would go on, unstable, if it were kept from a direction in which it turned before it came here.
     fn would_go_on(&mut self, come: &Point, into: &[f64], here: &Point, way: Way) -> bool {
-        let step = self.distance(&come.state.q, &here.state.q).hypot((here.state.t - come.state.t) / way.span);
+        let step =
+            self.distance(&come.state.q, &here.state.q).hypot((here.state.t - come.state.t) / way.span);
         let kept = self.free.len();
         let w = self.weights();
         let mut held = vec![0.0; self.structure.n];
