@@ -18,15 +18,15 @@ pub(crate) struct VariantsArgs {
     /// Only one of the two studies
     #[arg(long, value_enum)]
     only: Option<Study>,
-    /// Finest mesh of the study of scaling
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=64))]
-    finest: u32,
-    /// The absolute stopping test: norm of the residual in the units of each form
-    #[arg(long, value_name = "NUMBER", default_value_t = 1e-7)]
-    absolute: f64,
-    /// About how long to time the kernels [s]
-    #[arg(long, value_name = "TIME", default_value_t = 5.0)]
-    seconds: f64,
+    /// Finest mesh of the study of scaling [default: 64]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    finest: Option<u32>,
+    /// The absolute stopping test of that study: norm of the residual in the units of each form [default: 1e-7]
+    #[arg(long, value_name = "NUMBER")]
+    absolute: Option<f64>,
+    /// About how long to time the kernels of the stiffness models [s] [default: 5]
+    #[arg(long, value_name = "TIME")]
+    seconds: Option<f64>,
     /// Folder for tables and pictures, new or empty [default: runs/variants, numbered]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -44,7 +44,19 @@ enum Study {
 }
 
 pub(crate) fn variants(args: &VariantsArgs) -> Result<Exit, Error> {
-    for (name, x) in [("--absolute", args.absolute), ("--seconds", args.seconds)] {
+    let given = [
+        ("--finest", args.finest.is_some(), Study::Scaling),
+        ("--absolute", args.absolute.is_some(), Study::Scaling),
+        ("--seconds", args.seconds.is_some(), Study::Stiffness),
+    ];
+    if let Some((name, ..)) =
+        given.iter().find(|(_, given, of)| *given && args.only.is_some_and(|o| o != *of))
+    {
+        return Err(Fault::new(format!("`{name}` is for the other study: leave it out, or `--only`")).into());
+    }
+    let finest = args.finest.unwrap_or(64) as usize;
+    let (absolute, seconds) = (args.absolute.unwrap_or(1e-7), args.seconds.unwrap_or(5.0));
+    for (name, x) in [("--absolute", absolute), ("--seconds", seconds)] {
         if !(x > 0.0 && x <= 1e5) {
             return Err(Fault::new(format!("`{name}` must be positive and at most 100000, not {x}")).into());
         }
@@ -54,7 +66,7 @@ pub(crate) fn variants(args: &VariantsArgs) -> Result<Exit, Error> {
         Some(path) => RunFolder::at(path.clone())?,
         None => RunFolder::numbered(Path::new("runs"), "variants")?,
     };
-    let meshes: Vec<usize> = MESHES.into_iter().filter(|n| *n <= args.finest as usize).collect();
+    let meshes: Vec<usize> = MESHES.into_iter().filter(|n| *n <= finest).collect();
     let models = if args.only == Some(Study::Scaling) { Vec::new() } else { models() };
     let problems = if args.only == Some(Study::Stiffness) { &[][..] } else { &Problem::ALL[..] };
     // each problem: every mesh in four forms and with two tests, then its histories
@@ -69,11 +81,11 @@ pub(crate) fn variants(args: &VariantsArgs) -> Result<Exit, Error> {
         scaling: Vec::new(),
     };
     let mut plots = Vec::new();
-    let budget = Duration::from_secs_f64(args.seconds);
+    let budget = Duration::from_secs_f64(seconds);
     let mut compared = compare_models(&mut found, models, budget, &bar, watch);
     for &problem in problems {
         if compared.is_ok() && !watch.is_interrupted() {
-            compared = compare_forms(&mut found, problem, &meshes, args.absolute, &bar, watch)
+            compared = compare_forms(&mut found, problem, &meshes, absolute, &bar, watch)
                 .map(|pictures| plots.extend(pictures));
         }
     }
