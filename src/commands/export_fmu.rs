@@ -14,6 +14,10 @@ use std::path::{Path, PathBuf};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
+/// A function that every such library has, by its name.
+const ENTRY: &[u8] = b"fmi3InstantiateCoSimulation";
+const REMEDY: &str = "build it by `cargo build --release -p ropewalk-fmu`, or name it by `--library`";
+
 /// A scene, and where its FMU goes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ExportArgs {
@@ -69,22 +73,28 @@ fn platform() -> String {
 }
 
 /// The shared library that the FMU takes along.
-fn library(given: Option<&Path>) -> Result<PathBuf, Fault> {
+fn library(given: Option<&Path>) -> Result<Vec<u8>, Fault> {
     let name = format!("{DLL_PREFIX}{LIBRARY}{DLL_SUFFIX}");
     let beside = || Some(std::env::current_exe().ok()?.parent()?.join(&name));
     match given.map(Path::to_path_buf).or_else(beside) {
-        Some(path) if path.is_file() => Ok(path),
+        Some(path) if path.is_file() => match fs::read(&path) {
+            Ok(bytes) if bytes.windows(ENTRY.len()).any(|name| name == ENTRY) => Ok(bytes),
+            read => {
+                let why = read.map_or_else(|e| e.to_string(), |_| "it has no function of FMI".into());
+                let message = format!("`{}` is not the shared library of the FMU: {why}", path.display());
+                Err(Fault::new(message).with_help(REMEDY))
+            }
+        },
         found => {
             let place = found.map_or(name, |path| path.display().to_string());
             let fault =
                 Fault::new(format!("the shared library of the FMU is missing: there is no `{place}`"));
-            Err(fault
-                .with_help("build it by `cargo build --release -p ropewalk-fmu`, or name it by `--library`"))
+            Err(fault.with_help(REMEDY))
         }
     }
 }
 
-fn pack(out: &Path, interface: &Interface, resources: &Resources, library: &Path) -> std::io::Result<()> {
+fn pack(out: &Path, interface: &Interface, resources: &Resources, library: &[u8]) -> std::io::Result<()> {
     let mut zip = ZipWriter::new(File::create(out)?);
     let options = SimpleFileOptions::default();
     zip.start_file("modelDescription.xml", options)?;
@@ -97,7 +107,7 @@ fn pack(out: &Path, interface: &Interface, resources: &Resources, library: &Path
         format!("binaries/{}/{LIBRARY}{DLL_SUFFIX}", platform()),
         options.unix_permissions(0o755),
     )?;
-    zip.write_all(&fs::read(library)?)?;
+    zip.write_all(library)?;
     zip.finish()?;
     Ok(())
 }

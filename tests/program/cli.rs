@@ -273,6 +273,23 @@ fn a_benchmark_is_refused_before_it_begins() {
 }
 
 #[test]
+fn what_would_have_no_effect_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let variants = |more: &[&str]| run(folder.path(), &[&["variants", "--only"], more].concat());
+    variants(&["stiffness", "--finest", "4"]).refused(&["--finest", "--only"]);
+    variants(&["stiffness", "--absolute", "1e-5"]).refused(&["--absolute"]);
+    variants(&["scaling", "--seconds", "1"]).refused(&["--seconds"]);
+    fs::write(folder.path().join("empty.so"), "").unwrap();
+    fs::write(folder.path().join("swing.toml"), SWING).unwrap();
+    run(folder.path(), &["export-fmu", "swing.toml", "--library", "empty.so"]).refused(&[
+        "empty.so",
+        "no function of FMI",
+        "ropewalk-fmu",
+    ]);
+    assert!(!folder.path().join("swing.fmu").exists() && !folder.path().join("runs").exists());
+}
+
+#[test]
 fn json_scenes_are_read_too() {
     let folder = folder();
     let scene = r#"{
