@@ -26,6 +26,7 @@ pub(crate) mod scene_schema;
 mod schema;
 mod serve;
 pub(crate) mod shared;
+mod shell;
 pub(crate) mod statistics;
 pub(crate) mod sweep;
 pub(crate) mod variants;

@@ -1,5 +1,6 @@
 //! `ropewalk new NAME --from SCENE`
 
+use super::shell::in_shell;
 use super::{Exit, say, scene_schema};
 use ropewalk_models::Bundled;
 use ropewalk_report::{OutputError, write_atomic};
@@ -56,12 +57,12 @@ pub(crate) fn new(args: &NewArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
     if ours {
         write_atomic(&beside, &scene_schema::text())?;
     }
-    let path = path.display();
+    let (word, path) = (in_shell(&path.to_string_lossy()), path.display());
     let mut said = format!("{path}: {} to begin with\n", text.name);
     if ours {
         said += &format!("{}: what editors know of scenes (see `ropewalk book editors`)\n", beside.display());
     }
-    say(format!("{said}  ropewalk describe {path}    what it consists of\n  ropewalk run {path}"));
+    say(format!("{said}  ropewalk describe {word}    what it consists of\n  ropewalk run {word}"));
     Ok(Exit::Done)
 }
 

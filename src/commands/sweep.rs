@@ -1,5 +1,6 @@
 //! `ropewalk sweep SCENE --vary NAME=VALUES`
 
+use super::shell::in_shell;
 use super::{Exit, error, interrupted, progress, say, warn};
 use crate::cli::SweepArgs;
 use ropewalk_models::Bundled;
@@ -54,16 +55,6 @@ impl SweepArgs {
     }
 }
 
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+%@".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.into()
-    } else {
-        format!("'{}'", word.replace('\'', "'\\''"))
-    }
-}
-
 pub(crate) fn sweep(args: &SweepArgs, bundled: &[Bundled]) -> Result<Exit, Error> {
     if let Some(address) = &args.dask {
         let fault = Fault::new(format!("the cluster at {address} can only be asked by Python"));
@@ -78,7 +69,7 @@ pub(crate) fn sweep(args: &SweepArgs, bundled: &[Bundled]) -> Result<Exit, Error
             let planned = plan(&grid, &options)?;
             if !args.quiet {
                 let words = args.words(&planned.folder);
-                let command = words.iter().map(|w| quoted(w)).collect::<Vec<_>>().join(" ");
+                let command = words.iter().map(|w| in_shell(w)).collect::<Vec<_>>().join(" ");
                 say(planned.report(&format!("ropewalk {command}")).trim_end());
             }
             Ok(Exit::Done)
@@ -132,21 +123,4 @@ fn whole(args: &SweepArgs, grid: &Grid, options: &SweepOptions) -> Result<Exit, 
     } else {
         Exit::Done
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_are_quoted_for_shells() {
-        for (word, shown) in [
-            ("speed=5kn,15kn", "speed=5kn,15kn"),
-            ("speed=5..25 kn", "'speed=5..25 kn'"),
-            ("a=\"it's\"", "'a=\"it'\\''s\"'"),
-            ("", "''"),
-        ] {
-            assert_eq!(quoted(word), shown);
-        }
-    }
 }

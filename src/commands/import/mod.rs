@@ -8,6 +8,7 @@ mod rod;
 mod scene;
 mod water;
 
+use super::shell::in_shell;
 use super::{Exit, say, warn};
 use deck::Deck;
 use ropewalk_scene::{Fault, Format, SceneText};
@@ -44,7 +45,8 @@ pub(crate) fn run(args: &ImportArgs) -> Result<Exit, Error> {
         Some(out) => {
             std::fs::write(out, &imported.text)
                 .map_err(|e| Fault::new(format!("`{}` can't be written: {e}", out.display())))?;
-            say(format!("{}: {} line(s)\n  ropewalk run {}", out.display(), deck.lines.len(), out.display()));
+            let word = in_shell(&out.to_string_lossy());
+            say(format!("{}: {} line(s)\n  ropewalk run {word}", out.display(), deck.lines.len()));
         }
     }
     Ok(Exit::Done)
