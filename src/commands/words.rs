@@ -14,6 +14,7 @@ const WORDS: &[(&str, &[&str])] = &[
     ("current", &["water"]),
     ("damper", &["spring"]),
     ("encoder", &["payout", "length"]),
+    ("feeding", &["payout"]),
     ("fixed", &["weld", "clamp"]),
     ("float", &["attachments", "point_mass", "buoyancy"]),
     ("floor", &["bed", "contact"]),
@@ -31,6 +32,7 @@ const WORDS: &[(&str, &[&str])] = &[
     ("mooring", &["cable", "contact"]),
     ("morison", &["drag", "added_mass", "buoyancy"]),
     ("motor", &["driving", "rotation", "winch"]),
+    ("peel", &["lift_off"]),
     ("pin", &["revolute", "break"]),
     ("pipe", &["cable", "internal_flow"]),
     ("pulley", &["sheave"]),
@@ -46,6 +48,7 @@ const WORDS: &[(&str, &[&str])] = &[
     ("ship", &["vessel", "free_vessel", "driving", "rigid_body"]),
     ("slider", &["prismatic"]),
     ("spool", &["winch", "lift_off"]),
+    ("stock", &["winch"]),
     ("string", &["cable"]),
     ("strumming", &["vortex_shedding"]),
     ("strut", &["distance", "rigid_body"]),
@@ -68,6 +71,7 @@ const WORDS: &[(&str, &[&str])] = &[
 
 /// What some of them are called here, and where they are written.
 const NOTES: &[(&str, &str)] = &[
+    ("feeding", "The record `feeding` of older scenes is `payout`: `ropewalk migrate SCENE` rewrites them."),
     (
         "frame",
         "A rigid body has a frame of its own: `position` and `angles` say where it starts, and all data of the body are in \
@@ -83,11 +87,13 @@ const NOTES: &[(&str, &str)] = &[
         "A mooring is a cable that hangs from a fairlead to an anchor, on a `bed`. \
          `from_equilibrium = true` in `[run]` starts it at rest: `ropewalk book mooring`.",
     ),
+    ("peel", "What older scenes call `peel` is `adhesion_energy`: `ropewalk migrate SCENE` rewrites them."),
     (
         "section",
         "The cross-section of a cable is its table `section = { mass = …, ea = …, ei = … }`, or the name of one of `[[sections]]`; \
          `sections` gives it several. Sections of a scene file are `run`, `solver`, `statics`, `water` and `air`.",
     ),
+    ("stock", "What older scenes call `stock` is `stored_length`: `ropewalk migrate SCENE` rewrites them."),
 ];
 
 /// A word of the field as it stands in the lists: small, in the singular.
