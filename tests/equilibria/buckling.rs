@@ -435,3 +435,19 @@ fn what_gives_way_does_not_hang_on_the_steps() {
         }
     }
 }
+
+/// Beside a line a thousand times as long a path can't be followed through what the small arch does: that is said, at its place.
+#[test]
+fn what_can_not_be_followed_is_said() {
+    let long = "[[elements]]\ntype = \"cable\"\nname = \"long\"\npoints = [[0, 0, -5], [1000, 0, -5]]\nelements = 20\n\
+                section = { mass = 1, ea = 1e4, ei = 1 }\n\
+                [[constraints]]\ntype = \"spherical\"\nname = \"c\"\nmarker = \"long.start\"\n\
+                [[constraints]]\ntype = \"spherical\"\nname = \"d\"\nmarker = \"long.end\"";
+    for (besides, said) in [("", 0), (long, 1)] {
+        let h = simulate(parse(&arch(0.1, 2467.06, 1, &on_top(1.584, 0.0), besides)).scene())
+            .unwrap_or_else(|e| panic!("{e}"));
+        let unseen = |w: &&String| w.contains("couldn't be followed");
+        assert_eq!(h.warnings.iter().filter(unseen).count(), said, "{:?}", h.warnings);
+        assert!(h.critical.is_empty(), "{:?}", h.critical);
+    }
+}

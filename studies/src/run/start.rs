@@ -387,14 +387,11 @@ impl Done {
                 }
             }
             self.critical = search.critical().to_vec();
+            unseen_by(search).into_iter().for_each(|remark| self.remark(remark));
             let found = found?;
             // of several free directions another mixture is found at every load: once is enough
             let count = search.neutral().len();
-            for remark in remarks_on(search).into_iter().skip(free.min(count)) {
-                if !self.remarks.contains(&remark) {
-                    self.remarks.push(remark);
-                }
-            }
+            remarks_on(search).into_iter().skip(free.min(count)).for_each(|remark| self.remark(remark));
             free = free.max(count);
             for (event, level) in telling.iter().zip(&mut levels) {
                 let now = event.value(&model, &self.state);
@@ -422,6 +419,13 @@ impl Done {
         Ok(End::Done)
     }
 
+    /// Says something once.
+    fn remark(&mut self, text: String) {
+        if !self.remarks.contains(&text) {
+            self.remarks.push(text);
+        }
+    }
+
     /// Shows an equilibrium to the observer.
     fn show(&self, state: &State, observer: &mut dyn Observer) -> ControlFlow<()> {
         let sample = Sample { model: &self.model, at: state.at(), lambda: &state.lambda, audit: &self.audit };
@@ -438,6 +442,18 @@ fn crossed(before: Option<f64>, now: f64, direction: i8) -> bool {
         1.. => up,
         _ => down,
     }
+}
+
+/// Where the path of equilibria was left for a leap.
+fn unseen_by(search: &Statics<'_>) -> Vec<String> {
+    let stretch = |[from, to]: &[f64; 2]| {
+        format!(
+            "between {from:.6} and {to:.6} of the load the equilibrium moved farther than its path explains, and the path there \
+             couldn't be followed: a load at which something gives way may have been passed. Look closer: more `steps`, or \
+             what is small and what is large in scenes of their own"
+        )
+    };
+    search.unseen().iter().map(stretch).collect()
 }
 
 /// What one should know about the last equilibrium of a search.

@@ -81,6 +81,7 @@ impl Statics<'_> {
             Err(_) => {
                 (self.unstable, self.neutral, self.doubt) = (unstable, neutral, doubt);
                 (self.judged, self.free) = (judged, free);
+                self.unseen.push([from.t, state.t]);
             }
         }
         Ok(())

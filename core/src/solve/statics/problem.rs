@@ -47,6 +47,8 @@ pub struct Statics<'a> {
     pub(super) judged: Judgement,
     /// Critical loads met so far.
     pub(super) critical: Vec<Critical>,
+    /// Stretches of time that it leapt over and that the path couldn't be followed through.
+    pub(super) unseen: Vec<[f64; 2]>,
     /// Longest stretch of time that was to be followed.
     pub(super) span: f64,
     /// Whether to give up, asked at every iteration.
@@ -103,6 +105,7 @@ impl<'a> Statics<'a> {
             doubt: None,
             judged: Judgement { potential: true, ..Judgement::default() },
             critical: Vec::new(),
+            unseen: Vec::new(),
             span: 0.0,
             is_over: None,
         })
@@ -158,6 +161,12 @@ impl<'a> Statics<'a> {
     /// What can't be told about the stability of the last equilibrium.
     pub fn doubt(&self) -> Option<&str> {
         self.doubt.as_deref()
+    }
+
+    /// Stretches of time in which [`Statics::follow`] moved farther than the path explains, and couldn't go along it: a
+    /// critical load there was passed.
+    pub fn unseen(&self) -> &[[f64; 2]] {
+        &self.unseen
     }
 
     /// Critical loads that [`Statics::follow`] has met, in the order of the path.
