@@ -13,6 +13,9 @@ const HALVINGS: u32 = 20;
 const CLEAR: u32 = 10;
 /// Cosine between the path and the direction that has become free from which on they are one: at a limit of the load.
 pub(super) const ALONG: f64 = 0.7;
+/// What the load does along a direction, in parts of what it could, and how far the path goes that way, from which on it is
+/// driven there.
+const DRIVEN: f64 = 1e-2;
 /// What is left of the way between two equilibria once their loads are the same to rounding, if they are of different paths.
 const LEAP: f64 = 0.1;
 /// How far behind a critical load the stable path is taken up, in parts of what is left of the way.
@@ -95,9 +98,14 @@ impl Statics<'_> {
     /// Whether the load, as it grows, drives the model along a direction. Of what is led by motions the way that was come by
     /// tells.
     fn is_driven_along(&mut self, soft: &[f64], state: &State, come: &Point, way: Way) -> bool {
+        let along = self.inner(&come.slope, soft).abs() / self.inner(soft, soft).sqrt();
         match self.work_along(soft, state, way) {
-            Some(share) => share > ACROSS,
-            None => self.inner(&come.slope, soft).abs() > ALONG * self.inner(soft, soft).sqrt(),
+            // what has branched off a little way has some work done along it, but wasn't the way that was come by
+            Some(share) => {
+                let motion = self.inner(&come.slope, &come.slope).sqrt();
+                share > ACROSS && (share > DRIVEN || along > DRIVEN * motion)
+            }
+            None => along > ALONG,
         }
     }
 
