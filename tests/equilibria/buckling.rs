@@ -367,6 +367,16 @@ fn arch(rise: f64, ea: f64, steps: usize, load: &str, besides: &str) -> String {
     text
 }
 
+/// A line beside it that nothing loads.
+fn long_line(length: u32, elements: u32, ea: f64) -> String {
+    format!(
+        "[[elements]]\ntype = \"cable\"\nname = \"long\"\npoints = [[0, 0, -5], [{length}, 0, -5]]\n\
+         elements = {elements}\nsection = {{ mass = 1, ea = {ea:e}, ei = 1 }}\n\
+         [[constraints]]\ntype = \"spherical\"\nname = \"c\"\nmarker = \"long.start\"\n\
+         [[constraints]]\ntype = \"spherical\"\nname = \"d\"\nmarker = \"long.end\""
+    )
+}
+
 /// A force on its top, or on all of it, that grows with time from one share of itself.
 fn on_top(load: f64, from: f64) -> String {
     let time = format!("time = {{ table = {{ t = [0, 1], value = [{from}, 1] }} }}");
@@ -406,13 +416,10 @@ fn a_path_does_not_leap_over_a_small_snap() {
 /// a line a hundred times as long, and where it snaps through soon after it would have swayed.
 #[test]
 fn what_gives_way_does_not_hang_on_the_steps() {
-    let long = "[[elements]]\ntype = \"cable\"\nname = \"long\"\npoints = [[0, 0, -5], [200, 0, -5]]\nelements = 8\n\
-                section = { mass = 1, ea = 1e6, ei = 1 }\n\
-                [[constraints]]\ntype = \"spherical\"\nname = \"c\"\nmarker = \"long.start\"\n\
-                [[constraints]]\ntype = \"spherical\"\nname = \"d\"\nmarker = \"long.end\"";
+    let long = long_line(200, 8, 1e6);
     let cases = [
         ("pulled up first", 0.05, 2.5e3, all_along(5.0, -1.0), "", 1e-6),
-        ("beside a long line", 0.05, 1e6, on_top(60.0, 0.0), long, 1e-6),
+        ("beside a long line", 0.05, 1e6, on_top(60.0, 0.0), &long, 1e-6),
         ("sways", 0.1, 2.5e3, all_along(10.0, -1.0), "", 1e-6),
         ("sways at once", 0.1, 2.5e5, all_along(10.0, 0.0), "", 1e-6),
         // the path goes over to the one that branches off, which is stable, and is told by where that has been seen
@@ -439,11 +446,8 @@ fn what_gives_way_does_not_hang_on_the_steps() {
 /// Beside a line a thousand times as long a path can't be followed through what the small arch does: that is said, at its place.
 #[test]
 fn what_can_not_be_followed_is_said() {
-    let long = "[[elements]]\ntype = \"cable\"\nname = \"long\"\npoints = [[0, 0, -5], [1000, 0, -5]]\nelements = 20\n\
-                section = { mass = 1, ea = 1e4, ei = 1 }\n\
-                [[constraints]]\ntype = \"spherical\"\nname = \"c\"\nmarker = \"long.start\"\n\
-                [[constraints]]\ntype = \"spherical\"\nname = \"d\"\nmarker = \"long.end\"";
-    for (besides, said) in [("", 0), (long, 1)] {
+    let long = long_line(1000, 20, 1e4);
+    for (besides, said) in [("", 0), (long.as_str(), 1)] {
         let h = simulate(parse(&arch(0.1, 2467.06, 1, &on_top(1.584, 0.0), besides)).scene())
             .unwrap_or_else(|e| panic!("{e}"));
         let unseen = |w: &&String| w.contains("couldn't be followed");
