@@ -182,14 +182,17 @@ fn dragged(case: &Value, elements: usize, equilibrium: &str, course: [f64; 3]) -
 fn a_line_dragged_along_its_bed_stretches_and_lets_go_as_the_closed_form() {
     for case in reference(include_str!("../data/sea/grounded_friction.json")) {
         if number(&case["bed_slope_deg"]) != 0.0 {
-            // without load it slides off before friction takes hold: here it was pulled before
-            let h = run(&dragged(&case, 60, "pulled", [1.0; 3]));
-            let [x, z] = ["x", "z"].map(|k| last(&h, &format!("line.end.{k}")));
+            // it lies there, and a little of the load holds it straight, or it was pulled before
+            let laid = run(&dragged(&case, 60, "laid", [0.002, 1.0, 1.0]));
+            let pulled = run(&dragged(&case, 60, "pulled", [1.0; 3]));
             let slope = number(&case["bed_slope_deg"]).to_radians();
-            let moved = x * slope.cos() + z * slope.sin() - number(&case["section"]["L"]);
-            let (right, anchor) = (number(&case["end_displacement"]), last(&h, "anchor.magnitude"));
-            println!("{}: {moved} instead of {right}, anchor {anchor} N", case["name"]);
-            assert!((moved / right - 1.0).abs() < 0.01 && anchor < 0.01 * number(&case["pull"]));
+            for (how, h) in [("laid", laid), ("pulled", pulled)] {
+                let [x, z] = ["x", "z"].map(|k| last(&h, &format!("line.end.{k}")));
+                let moved = x * slope.cos() + z * slope.sin() - number(&case["section"]["L"]);
+                let (right, anchor) = (number(&case["end_displacement"]), last(&h, "anchor.magnitude"));
+                println!("{}, {how}: {moved} instead of {right}, anchor {anchor} N", case["name"]);
+                assert!((moved / right - 1.0).abs() < 0.01 && anchor < 0.01 * number(&case["pull"]));
+            }
             continue;
         }
         // the load rises to the pull and falls to half of it; a little of it holds the line straight before friction does
@@ -338,23 +341,96 @@ fn beds_where_no_wave_feels_them_and_grids_that_end_too_soon_are_told() {
     assert!(!told(&grid(10.0), 30.0, beyond));
 }
 
-/// A slack line slides down a slope and folds where friction comes only after the search.
-#[test]
-fn where_a_line_folds_without_friction_the_error_says_what_was_left_out() {
-    let case = serde_json::json!({
-        "sections": [{ "L": 193.0, "w": 100.0, "EA": 5e7 }],
+/// A line of 158 m between an anchor on a bed that slopes and a fairlead 150 m away and 50 m above the anchor.
+fn on_slope(slope: f64, ratio: f64) -> Value {
+    serde_json::json!({
+        "sections": [{ "L": ratio * f64::hypot(150.0, 50.0), "w": 100.0, "EA": 5e8 }],
         "load_after_section": [],
-        "bed_slope_deg": 8.6,
-        "fairlead": [150.0, 57.5],
+        "bed_slope_deg": slope.to_degrees(),
+        "fairlead": [150.0, 50.0],
         "mu": 0.5,
-    });
-    for equilibrium in ["none", "laid", "pulled"] {
-        let text = line(&case, 60, 1e6, equilibrium);
-        let file = SceneFile::parse(&text, "bed", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
-        let e = simulate(&file.into_scene()).err().expect("must fail").to_string();
-        assert!(
-            e.contains("without the friction of `bed`") && e.contains("a little bending stiffness"),
-            "{e}"
-        );
+    })
+}
+
+/// Tension of such a line at its fairlead and where it leaves the bed, without stretch: a straight line along the bed, and a
+/// catenary that begins as steep.
+fn catenary_from_slope(case: &Value) -> [f64; 2] {
+    let (length, weight) = (number(&case["sections"][0]["L"]), number(&case["sections"][0]["w"]));
+    let slope = number(&case["bed_slope_deg"]).to_radians();
+    let [x, z] = [0, 1].map(|i| number(&case["fairlead"][i]));
+    let root = |mut low: f64, mut high: f64, above: &dyn Fn(f64) -> bool| {
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if above(middle) { high = middle } else { low = middle }
+        }
+        0.5 * (low + high)
+    };
+    let ends = |h: f64, lies: f64| {
+        let [from, to] = [h * slope.tan(), h * slope.tan() + weight * (length - lies)];
+        let ahead = h / weight * ((to / h).asinh() - (from / h).asinh());
+        [lies * slope.cos() + ahead, lies * slope.sin() + (to.hypot(h) - from.hypot(h)) / weight, to]
+    };
+    let lies = |h: f64| root(0.0, length, &|lies| ends(h, lies)[1] < z);
+    let h = root(1e-3 * weight, 1e4 * weight, &|h| ends(h, lies(h))[0] > x);
+    [h.hypot(ends(h, lies(h))[2]), h / slope.cos()]
+}
+
+/// On a slope a slack line slides down and folds below its anchor where nothing holds it. Laid there it keeps the tension with
+/// which it leaves the bed, and pulled before it has lost what lies and what friction takes.
+#[test]
+fn slack_lines_on_slopes_are_found_where_friction_holds_them() {
+    for (slope, ratio) in [(-0.2, 1.05), (-0.1, 1.1), (0.05, 1.1), (0.1, 1.05), (0.15, 1.1), (0.2, 1.05)] {
+        let case = on_slope(slope, ratio);
+        let [top, leaves] = catenary_from_slope(&case);
+        for equilibrium in ["laid", "pulled"] {
+            let h = run(&line(&case, 60, 1e6, equilibrium));
+            let [fairlead, anchor] = ["fairlead.magnitude", "anchor.magnitude"].map(|n| last(&h, n));
+            println!(
+                "{slope} {ratio} {equilibrium}: {fairlead:.0} N instead of {top:.0}, anchor {anchor:.0} of {leaves:.0}"
+            );
+            assert!((fairlead / top - 1.0).abs() < 5e-3, "{slope} {ratio} {equilibrium}");
+            match equilibrium {
+                "laid" => assert!((anchor - leaves).abs() < 5e-3 * top, "{slope} {ratio}"),
+                _ => assert!(anchor < leaves, "{slope} {ratio}"),
+            }
+        }
     }
+}
+
+/// The message of an equilibrium that isn't found.
+fn error(text: &str) -> String {
+    let file = SceneFile::parse(text, "bed", Format::Toml, &[]).unwrap_or_else(|e| panic!("{e}"));
+    simulate(&file.into_scene()).err().expect("must fail").to_string()
+}
+
+#[test]
+fn what_friction_had_to_do_with_an_equilibrium_that_is_not_found_is_told() {
+    // nothing holds it but friction
+    let case = on_slope(0.15, 1.0);
+    let free = |equilibrium: &str| {
+        let text = line(&case, 20, 1e6, equilibrium);
+        let (from, to) =
+            (text.find("[[constraints]]").expect("text"), text.find("[[forces]]").expect("text"));
+        let records = text.find("[[records]]").expect("text");
+        let lies = [0.0, f64::hypot(150.0, 50.0)].map(|s| [s * f64::cos(0.15), 0.0, s * f64::sin(0.15)]);
+        let text = format!("{}{}", &text[..from], &text[to..records]);
+        let points = text.find("points").expect("text");
+        let end = points + text[points..].find('\n').expect("text");
+        format!(
+            "{}points = {lies:?}{}",
+            &text[..points],
+            &text[end..].replace("ea = 5e8", "ea = 5e8, ei = 1e4")
+        )
+    };
+    let e = error(&free("none"));
+    assert!(e.contains("without the friction of `bed`"), "{e}");
+    let h = run(&free("laid"));
+    assert!(h.warnings.is_empty(), "nothing moves freely that friction holds: {:?}", h.warnings);
+    // longer than the way down and along the bed, so that nothing pulls it
+    let text = line(&on_slope(0.15, 1.2), 20, 1e6, "pulled").replace("ea = 5e8", "ea = 5e7, ei = 1e4");
+    let e = error(&text);
+    assert!(e.contains("now that friction has taken hold") && e.contains("`laid`"), "{e}");
+    let fairlead = last(&run(&text.replace("pulled", "laid")), "fairlead.magnitude");
+    let hangs = 100.0 * (50.0 - 150.0 * f64::tan(0.15));
+    assert!((fairlead / hangs - 1.0).abs() < 0.03, "{fairlead} N instead of {hangs}");
 }

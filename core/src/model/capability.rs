@@ -43,10 +43,12 @@ pub trait Remembers {
     fn rests(&self) -> bool {
         false
     }
-    /// Whether it takes hold of the first equilibrium, which is one without it.
+    /// Whether it takes hold of the first equilibrium, which is one without any of it.
     fn takes_hold(&self) -> bool {
         false
     }
+    /// Forgets all that held, since an equilibrium is looked for from a guess.
+    fn let_go(&self, _memory: &mut [f64]) {}
     /// Which way what it resists goes at equilibria, if it takes part in those so: a word such as `hoisting`.
     fn sliding(&self) -> Option<&'static str> {
         None

@@ -127,6 +127,11 @@ pub trait Line: Send + Sync {
     }
     /// Lays its nodes evenly along the straight line between its ends, as the start of another search for equilibrium.
     fn straighten(&self, _q: &mut [f64]) {}
+    /// Lays its nodes unstretched along an arc between its ends that is bent across the direction `down`; whether it is slack
+    /// enough for one.
+    fn bow(&self, _q: &mut [f64], _down: &V3<f64>) -> bool {
+        false
+    }
     /// Turns round what is folded inside its elements, as no cable is, and tells where the first of that was: unstretched
     /// arc length from the start [m]. Another search for equilibrium begins there.
     fn unfold(&self, _q: &mut [f64]) -> Option<f64> {

@@ -13,6 +13,7 @@ mod directed;
 mod elastic;
 mod element;
 pub mod flow;
+mod guess;
 mod l1;
 mod l1n;
 mod l2;

@@ -418,26 +418,11 @@ impl Line for CablePart {
     }
 
     fn straighten(&self, q: &mut [f64]) {
-        let (first, last) = (self.seats[0].0, self.seats[self.seats.len() - 1].0);
-        let mesh = self.material(q).into_owned();
-        let length = mesh[mesh.len() - 1] - mesh[0];
-        let from: V3<f64> = std::array::from_fn(|i| q[first + i]);
-        let mut way: V3<f64> = std::array::from_fn(|i| q[last + i] - from[i]);
-        if way.iter().all(|x| x.abs() < 1e-3 * length) {
-            // ends that coincide give no direction; any will do
-            way = [1e-3 * length, 0.0, 0.0];
-        }
-        let tangents: Vec<V3<f64>> = self.seats.iter().map(|s| tangent(&q[s.0..])).collect();
-        for (k, &(at, _)) in self.seats.iter().enumerate() {
-            for i in 0..3 {
-                q[at + i] = from[i] + way[i] * (mesh[k] - mesh[0]) / length;
-                q[at + 3 + i] = way[i] / length;
-            }
-        }
-        if self.twisted.is_some() {
-            let seats: Vec<usize> = self.seats.iter().map(|s| s.0).collect();
-            twisted::follow(q, &seats, &tangents);
-        }
+        self.lay_straight(q);
+    }
+
+    fn bow(&self, q: &mut [f64], down: &V3<f64>) -> bool {
+        self.lay_bowed(q, down)
     }
 
     fn unfold(&self, q: &mut [f64]) -> Option<f64> {

@@ -5,7 +5,7 @@
 //! where it lay sideways, so that no ground pushes a line. When time begins to run, the bristles take over exactly this force.
 
 use super::block::{Block, MOST, Slopes};
-use super::friction::{Brake, Friction, MEMORY, Pressed};
+use super::friction::{Friction, MEMORY, Pressed};
 use super::group::{Bristles, Group, Scratch, What};
 use super::seat::{Frame, Seat, minus};
 use super::term::Contact;
@@ -13,11 +13,6 @@ use super::touch::Touch;
 use ropewalk_core::held::{Held, delta, three};
 use ropewalk_core::rotation::{M3, transposed_times};
 use ropewalk_core::{Assembly, At, SpanLine, V3, dot};
-
-/// What the memory says of the time before it runs: equilibria without friction, and with it; then it runs.
-const LAID: f64 = 0.0;
-const BRAKED: f64 = 1.0;
-const RUNS: f64 = 2.0;
 
 /// The force on a cell, and its derivatives by the normal force, by the slope of the line and by its place.
 struct Braked {
@@ -37,41 +32,6 @@ fn slope_weights(xi: f64, l: f64) -> [f64; 4] {
 }
 
 impl Contact {
-    fn is_at(&self, memory: &[f64], phase: f64) -> bool {
-        self.begun.is_some_and(|begun| memory.get(begun) == Some(&phase))
-    }
-
-    /// Whether equilibria are looked for, with a friction that a pull uses up.
-    pub(super) fn brakes(&self, memory: &[f64]) -> bool {
-        self.is_at(memory, BRAKED)
-    }
-
-    /// Says that time runs, if anybody asks.
-    pub(super) fn begin(&self, memory: &mut [f64]) {
-        if let Some(begun) = self.begun {
-            memory[begun] = RUNS;
-        }
-    }
-
-    /// Takes up an equilibrium: the first is one without friction, from where on it brakes. Whether it was that.
-    pub(super) fn begin_to_brake(&self, at: &At<'_>, memory: &mut [f64]) -> bool {
-        let Some(begun) = self.begun else { return false };
-        let first = self.is_at(memory, LAID);
-        let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
-        for group in &self.groups {
-            let Some(bristles) = group.bristles else { continue };
-            let mut cells = self.press(group, &frame, at, &mut scratch);
-            for (cell, pressed) in cells[..bristles.cells].iter_mut().enumerate() {
-                let own = bristles.at + MEMORY * cell;
-                memory[own] = f64::from(u8::from(pressed.settle()));
-                let place = self.fixed.place(&frame, &group.station(cell).x(at));
-                memory[own + 1..own + 4].copy_from_slice(&place);
-            }
-        }
-        memory[begun] = BRAKED;
-        first
-    }
-
     fn braked(
         &self,
         friction: &Friction,
@@ -96,31 +56,28 @@ impl Contact {
         let stretch = dot(&slope, &slope).sqrt();
         let (t, n) = (seen(&slope).map(|x| x / stretch), pressed.n);
         let (share, rise) = brake.share(stretch - 1.0);
-        // what of its weight a slack line would slide down by
-        let up = seen(&brake.up);
-        let (rises, steep) = (dot(&n, &up).max(0.1), dot(&t, &up));
-        let hold = (steep / rises).clamp(-friction.mu, friction.mu);
-        let holds = hold.abs() < friction.mu;
-        let most = -brake.way * friction.mu - hold;
+        let used = -brake.way * friction.mu;
         // sideways it lies where it lay, as far as tension doesn't straighten it
         let side = friction.mu / l;
-        let loose = 1.0 - share.abs();
+        let taut = share.max(0.0);
+        let loose = 1.0 - taut;
         let off = minus(&self.fixed.place(frame, &group.station(cell).x(at)), &three(own, 1));
         let across = |x: &V3<f64>| -> V3<f64> {
             let (along, normal) = (dot(x, &t), dot(x, &n));
             std::array::from_fn(|i| x[i] - along * t[i] - normal * n[i])
         };
         let aside = across(&off).map(|x| if own[0] == 0.0 { 0.0 } else { side * x });
-        let pull = hold + most * share;
-        let by_normal: V3<f64> = std::array::from_fn(|i| pull * t[i] - loose * aside[i]);
+        // what a slack line would slide down by
+        let borne = self.borne(&seen(&brake.up), &n);
+        let slack: V3<f64> = std::array::from_fn(|i| borne[i] - aside[i]);
+        let by_normal: V3<f64> = std::array::from_fn(|i| loose * slack[i] + used * share * t[i]);
         let force = pressed.normal;
         // rows by components of the slope: what is along it strains, what is across turns
         let by_slope: M3 = std::array::from_fn(|i| {
             std::array::from_fn(|j| {
                 let turn = (delta(i, j) - t[i] * t[j]) / stretch;
-                let tilt = if holds { (up[j] - steep * t[j]) / (rises * stretch) } else { 0.0 };
-                let strain = (most * t[i] + share.signum() * aside[i]) * rise * t[j];
-                force * (pull * turn + (1.0 - share) * t[i] * tilt + strain)
+                let strain = (used * t[i] - if share > 0.0 { slack[i] } else { 0.0 }) * rise * t[j];
+                force * (used * share * turn + strain)
             })
         });
         let by_place: M3 = std::array::from_fn(|i| {
@@ -180,8 +137,8 @@ impl Contact {
         }
     }
 
-    /// How far the bristle of a cell is stretched that pulls as hard.
-    pub(super) fn braked_stretch(
+    /// The force on a cell.
+    pub(super) fn braking(
         &self,
         group: &Group,
         cell: usize,
@@ -189,22 +146,8 @@ impl Contact {
         (frame, at): (&Frame, &At<'_>),
         memory: &[f64],
     ) -> Option<V3<f64>> {
-        let braked = self.braked(self.law.friction.as_ref()?, group, cell, pressed, (frame, at), memory)?;
-        let stiffness = group.bristles.as_ref()?.grip.stiffness;
-        let normal = dot(&braked.f, &pressed.n);
-        Some(std::array::from_fn(|i| (normal * pressed.n[i] - braked.f[i]) / stiffness))
-    }
-
-    /// Lets friction brake the cables at equilibria; `begun` is the place in the memory that says whether time runs.
-    #[must_use]
-    pub fn with_brakes(mut self, brakes: &[Option<Brake>], begun: usize) -> Self {
-        for (group, brake) in self.groups.iter_mut().zip(brakes) {
-            if let Some(bristles) = &mut group.bristles {
-                bristles.grip.brake = *brake;
-            }
-        }
-        self.begun = Some(begun);
-        self
+        let friction = self.law.friction.as_ref()?;
+        self.braked(friction, group, cell, pressed, (frame, at), memory).map(|braked| braked.f)
     }
 
     /// How far the surface of a part is from the shape at an arc length of it [m], negative where it is pressed in; `None` of what

@@ -243,7 +243,7 @@ impl Contact {
     /// where they touch.
     pub(super) fn move_anchors(&self, at: &At<'_>, memory: &mut [f64]) {
         let (frame, mut scratch) = (self.fixed.frame(at), Scratch::default());
-        let brakes = self.brakes(memory);
+        let rests = self.is_at_rest(memory);
         for group in &self.groups {
             let Some(bristles) = group.bristles else { continue };
             let mut cells = self.press(group, &frame, at, &mut scratch);
@@ -253,8 +253,8 @@ impl Contact {
                     memory[own] = 0.0;
                     continue;
                 }
-                let stretch = match brakes {
-                    true => self.braked_stretch(group, cell, pressed, (&frame, at), memory),
+                let stretch = match rests {
+                    true => self.stretch_at_rest((group, cell, pressed), (&frame, at), memory),
                     false => self.bristle(group, cell, pressed, &frame, at, memory).map(|b| b.hold.stretch),
                 };
                 let held = group.station(cell);
@@ -267,6 +267,6 @@ impl Contact {
                 (0..3).for_each(|i| memory[own + 1 + i] = s[i] - stretch[i]);
             }
         }
-        self.begin(memory);
+        self.hold(memory);
     }
 }

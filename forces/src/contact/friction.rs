@@ -40,8 +40,8 @@ pub enum AtRest {
     /// Nothing: they are those without friction. In time it holds from there on.
     #[default]
     None,
-    /// It takes hold where the first equilibrium of a load path lies, which is one without friction, and holds what it can as the
-    /// load changes: a line that was laid and then pulled.
+    /// It takes hold where the first equilibrium of a load path lies, and holds what it can as the load changes: a line that was laid
+    /// and then pulled. That first one is without friction, but for ground that slopes: it bears upright what is laid on it.
     Laid,
     /// It brakes each cable in full against being pulled by its higher end: a line that was laid under more tension than it has
     /// now. The tension on the ground falls by `μ` times the weight per length, down to nothing.

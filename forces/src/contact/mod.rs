@@ -21,6 +21,7 @@ pub(crate) mod level;
 mod lines;
 mod mesh;
 mod pressing;
+mod rest;
 mod round;
 mod search;
 mod seat;

@@ -134,8 +134,13 @@ impl Contact {
         block: &mut Block,
         cells: &mut [Pressed],
     ) {
-        let Some((touch, pair)) = self.touch(ball, frame, at) else { return };
-        self.add_force(&ball.held, &pair, &touch, || touch.slopes(), tangent, block);
+        let Some((mut touch, pair)) = self.touch(ball, frame, at) else { return };
+        let way = self.bears(at.internal).map(|up| self.upright(&up, &touch.gap.normal));
+        if let Some(way) = &way {
+            touch.f = way.map(|x| touch.normal * x);
+        }
+        let slopes = || way.as_ref().map_or_else(|| touch.slopes(), |way| touch.slopes_along(way));
+        self.add_force(&ball.held, &pair, &touch, slopes, tangent, block);
         let Some(cell) = cells.get_mut(ball.cell) else { return };
         cell.add(touch.normal, &touch.gap.normal);
         if let Some(w) = tangent {

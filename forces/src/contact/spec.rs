@@ -218,20 +218,19 @@ impl ContactSpec {
         }
         let contact = match self.law().friction {
             Some(friction) => {
-                let pulled = friction.equilibrium == AtRest::Pulled;
+                let rests = friction.equilibrium != AtRest::None;
                 let size = Contact::memory(points.len(), spans.len());
-                let memory = b.memory(&format!("{}: friction", self.name), size + usize::from(pulled));
+                let memory = b.memory(&format!("{}: friction", self.name), size + usize::from(rests));
                 let down = b.gravity();
                 let gravity = dot(&down, &down).sqrt();
+                let up = (gravity > 0.0).then(|| down.map(|g| -g / gravity));
                 let grips = self.grips(&friction, &touching, gravity, stiffness);
-                let contact = contact.with_grips(&grips, memory);
-                match pulled {
-                    true => {
-                        let brakes = touching.brakes(&friction, &contact, b.coordinates(), down)?;
-                        contact.with_brakes(&brakes, memory + size)
-                    }
-                    false => contact,
+                let mut contact = contact.with_grips(&grips, memory);
+                if friction.equilibrium == AtRest::Pulled {
+                    let brakes = touching.brakes(&friction, &contact, b.coordinates(), down)?;
+                    contact = contact.with_brakes(&brakes);
                 }
+                if rests { contact.with_rest(up, memory + size) } else { contact }
             }
             None => contact,
         };

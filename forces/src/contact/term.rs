@@ -6,6 +6,7 @@ use super::friction::{AtRest, CELLS, Pressed};
 use super::group::{Ball, Group, Place, Scratch, Span, What};
 use super::law::ContactLaw;
 use super::level::Lies;
+use super::rest::Resting;
 use super::seat::{Fixed, Seat};
 use super::shape::Shape;
 use super::stiffness::Stiffness;
@@ -37,8 +38,8 @@ pub struct Contact {
     pub(super) groups: Vec<Group>,
     /// Pieces of cables that feed.
     pub(super) flowing: Vec<Flowing>,
-    /// Where the memory says that time runs, if friction is used up at equilibria.
-    pub(super) begun: Option<usize>,
+    /// What friction does at equilibria, if it takes part in them.
+    pub(super) resting: Option<Resting>,
 }
 
 impl Contact {
@@ -115,7 +116,7 @@ impl Contact {
         }
         let fixed = Fixed { shape, seat, origin, axes };
         let per_length = spans.iter().map(|s| stiffness.of_length(s.radius) * s.length).sum();
-        Ok(Contact { label, law, fixed, per_length, groups, flowing, begun: None })
+        Ok(Contact { label, law, fixed, per_length, groups, flowing, resting: None })
     }
 
     /// Says where the slender pieces are on parts of these names, one for each in the order of [`Contact::new`]; what material
@@ -166,7 +167,7 @@ impl Term for Contact {
         let mut cells = [Pressed::NONE; CELLS];
         let tangent = out.wants_tangent().then(|| out.weights());
         let body = self.body();
-        let level = self.level_in(at).filter(|_| !self.brakes(at.internal));
+        let level = self.level_in(at).filter(|_| !self.is_at_rest(at.internal));
         for (clique, group) in self.groups.iter().enumerate() {
             match (Self::lies(level.as_ref(), group, at), &level) {
                 (Lies::Above, _) => continue,
@@ -233,15 +234,17 @@ impl Remembers for Contact {
         self.law.friction.is_some_and(|f| f.equilibrium != AtRest::None)
     }
     fn takes_hold(&self) -> bool {
-        self.rests()
+        self.rests() && !self.slopes()
+    }
+    fn let_go(&self, memory: &mut [f64]) {
+        self.release(memory);
     }
     fn settle(&self, at: &At<'_>, memory: &mut [f64]) -> bool {
         match self.law.friction.map(|f| f.equilibrium) {
-            None | Some(AtRest::None) => return false,
-            Some(AtRest::Laid) => self.move_anchors(at, memory),
-            Some(AtRest::Pulled) => return self.begin_to_brake(at, memory),
+            None | Some(AtRest::None) => false,
+            Some(AtRest::Laid) => self.lay(at, memory),
+            Some(AtRest::Pulled) => self.brake(at, memory),
         }
-        false
     }
 }
 

@@ -77,6 +77,12 @@ impl Touch {
     /// `∂f/∂s = n ⊗ ∂F/∂s + F H`, `∂f/∂u = n ⊗ ∂F/∂u`.
     #[inline]
     pub fn slopes(&self) -> Slopes {
+        self.slopes_along(&self.gap.normal)
+    }
+
+    /// The same of a force `F` that acts in another direction than the normal, which doesn't turn with it.
+    #[inline]
+    pub fn slopes_along(&self, way: &V3<f64>) -> Slopes {
         let n = &self.gap.normal;
         // Hᵀ u = H u = H t
         let bent = self.gap.turn(&self.slip);
@@ -85,8 +91,8 @@ impl Touch {
         let (mut x, mut v) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
         for i in 0..3 {
             for j in 0..3 {
-                x[i][j] = n[i] * by_s[j];
-                v[i][j] = n[i] * by_u[j];
+                x[i][j] = way[i] * by_s[j];
+                v[i][j] = way[i] * by_u[j];
             }
         }
         for (kappa, t) in self.gap.bends.iter().filter(|b| b.0 != 0.0) {

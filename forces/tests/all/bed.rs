@@ -205,8 +205,10 @@ fn tangents_of_friction_that_a_pull_uses_up_are_exact() {
             let (nodes, q, contact) = lying(Shape::Plane, law, strain);
             let grip = Grip { stiffness: 1e3, damping: 10.0, brake: None };
             let size = Contact::memory(0, 1);
-            let contact =
-                contact.with_grips(&[grip], 0).with_brakes(&[Some(Brake { way, strain: 0.03, up })], size);
+            let contact = contact
+                .with_grips(&[grip], 0)
+                .with_brakes(&[Some(Brake { way, strain: 0.03, up })])
+                .with_rest(Some(up), size);
             let mut memory = vec![0.0; size + 1];
             let still = vec![0.0; 12];
             // where it lay
@@ -224,6 +226,49 @@ fn tangents_of_friction_that_a_pull_uses_up_are_exact() {
     }
 }
 
+/// What lies on a slope is borne upright, as far as friction could; bristles take that over, and a brake fades to it.
+#[test]
+fn ground_that_slopes_bears_upright() {
+    for (tilt, mu, across) in [(0.2, 0.6, None), (0.2, 0.6, Some(0.9)), (0.5, 0.3, None)] {
+        let friction = Friction { equilibrium: AtRest::Laid, across, ..Friction::new(mu) };
+        let law = ContactLaw { friction: Some(friction), ..ContactLaw::default() };
+        // the bed is level, and gravity leans along the line and across it
+        let up = [-0.8 * f64::sin(tilt), 0.6 * f64::sin(tilt), f64::cos(tilt)];
+        let (nodes, q, contact) = lying(Shape::Plane, law, 0.01);
+        let (size, still) = (Contact::memory(0, 1), vec![0.0; 12]);
+        let grip = Grip { stiffness: 1e4, damping: 0.0, brake: None };
+        let contact = contact.with_grips(&[grip], 0).with_rest(Some(up), size);
+        let mut memory = vec![0.0; size + 1];
+        let at = At { t: 0.0, q: &q, v: &still, a: &still, internal: &[], relaxed: None };
+        let force = |memory: &[f64]| -> [f64; 3] {
+            let at = At { internal: memory, ..at };
+            let all = ropewalk_core::testing::dense(&contact, &nodes, &at, Default::default(), Width::One).0;
+            std::array::from_fn(|i| -all[i] - all[6 + i])
+        };
+        let bare = force(&memory);
+        assert!(bare[0].abs() + bare[1].abs() < 1e-12 * bare[2], "nothing holds before it is asked to");
+        contact.let_go(&mut memory);
+        let error = check_tangent(&contact, &nodes, &At { internal: &memory, ..at }, Width::One);
+        let borne = force(&memory);
+        println!("{tilt}: {borne:?}, tangent {error:.1e}");
+        assert!(error < 1e-6, "{error:e}");
+        assert!((borne[2] / bare[2] - 1.0).abs() < 1e-12, "the ground pushes as before");
+        let share = f64::min(1.0, mu / f64::tan(tilt));
+        for i in 0..2 {
+            let right = share * bare[2] * up[i] / up[2];
+            assert!((borne[i] - right).abs() < 1e-9 * bare[2], "{} instead of {right}", borne[i]);
+        }
+        assert!(contact.settle(&at, &mut memory) && !contact.settle(&at, &mut memory.clone()), "once");
+        let held = force(&memory);
+        for i in 0..3 {
+            assert!((held[i] - borne[i]).abs() < 1e-6 * bare[2], "{held:?} takes over {borne:?}");
+        }
+        // a search anew knows nothing of that
+        contact.let_go(&mut memory);
+        assert_eq!(force(&memory), borne);
+    }
+}
+
 #[test]
 fn time_takes_over_the_friction_of_an_equilibrium() {
     let friction = Friction { equilibrium: AtRest::Pulled, ..Friction::new(0.6) };
@@ -232,7 +277,7 @@ fn time_takes_over_the_friction_of_an_equilibrium() {
     let size = Contact::memory(0, 1);
     let brake = Brake { way: 1.0, strain: 0.03, up: [0.0, 0.0, 1.0] };
     let grip = Grip { stiffness: 1e4, damping: 0.0, brake: None };
-    let contact = contact.with_grips(&[grip], 0).with_brakes(&[Some(brake)], size);
+    let contact = contact.with_grips(&[grip], 0).with_brakes(&[Some(brake)]).with_rest(Some(brake.up), size);
     let (mut memory, still) = (vec![0.0; size + 1], vec![0.0; 12]);
     let at = At { t: 0.0, q: &q, v: &still, a: &still, internal: &[], relaxed: None };
     let forces = |memory: &[f64]| {

@@ -13,8 +13,6 @@ const SETTLED: u32 = 4;
 const SHORT_ENOUGH: f64 = 16.0;
 /// What a step may leave unexplained, in parts of what it may leave at most, so that the next is longer.
 const EASY: f64 = 0.5;
-/// How often a search goes on from what was folded.
-const UNFOLDED: u32 = 8;
 /// How often the arc of a path is tried before shorter steps are.
 const ARCS: u32 = 3;
 
@@ -34,7 +32,13 @@ impl Statics<'_> {
         self.model.relabel(state);
         self.run_material(state)?;
         let before = state.clone();
-        let found = self.seek(state, cold).map_err(|e| if cold { self.without_friction(e) } else { e })?;
+        if cold {
+            self.model.let_go(state);
+        }
+        let found = self.seek(state, cold).map_err(|e| {
+            state.clone_from(&before);
+            if cold { self.without_friction(e) } else { e }
+        })?;
         self.refuse_unsteady(state).inspect_err(|_| state.clone_from(&before))?;
         let mut found = found;
         if let Some(why) = self.model.lost(&state.at()) {
@@ -46,9 +50,13 @@ impl Statics<'_> {
             if !self.model.settle(state) {
                 break;
             }
-            let more = self.search(state, false, false, true).or_else(|_| self.seek(state, true));
+            let more = self.search(state, false, false, true).and_then(|more| self.unfold(state, more));
+            let more = more.or_else(|_| self.seek(state, true));
             let more = more.map_err(|e| {
-                let why = format!("{}, now that friction has taken hold as its `equilibrium` says", e.why);
+                let why = format!(
+                    "{}, now that friction has taken hold as its `equilibrium` says: on a bed, what nothing pulls lies as it was `laid`",
+                    e.why
+                );
                 StaticsError { why, ..e }
             });
             found.add(&more.inspect_err(|_| state.clone_from(&before))?);
@@ -97,67 +105,6 @@ impl Statics<'_> {
         first.or_else(|e| self.find_otherwise(state, before, cold, e))
     }
 
-    /// A guess can lead into a fold or nowhere; straight cables between their ends rarely do.
-    fn find_straight(
-        &mut self,
-        state: &mut State,
-        before: &State,
-        first: Result<Found, StaticsError>,
-    ) -> Result<Found, StaticsError> {
-        let (neutral, doubt) = (self.neutral.clone(), self.doubt.clone());
-        let mut other = before.clone();
-        other.lambda.fill(0.0);
-        for part in self.model.parts() {
-            if let Some(line) = part.line() {
-                line.straighten(&mut other.q);
-            }
-        }
-        let second =
-            self.search(&mut other, true, true, true).and_then(|found| self.unfold(&mut other, found));
-        match (first, second) {
-            (Ok(found), Ok(again)) if self.folded(&other) <= self.folded(state) => {
-                _ = again;
-                (self.neutral, self.doubt) = (neutral, doubt);
-                Ok(found)
-            }
-            (_, Ok(again)) => {
-                *state = other;
-                Ok(Found { straightened: true, ..again })
-            }
-            (Ok(found), Err(_)) => {
-                (self.neutral, self.doubt) = (neutral, doubt);
-                Ok(found)
-            }
-            (Err(e), Err(_)) => Err(e),
-        }
-    }
-
-    /// Searches on from what was found for as long as it is folded inside elements, which no cable is.
-    fn unfold(&mut self, state: &mut State, mut found: Found) -> Result<Found, StaticsError> {
-        for _ in 0..UNFOLDED {
-            if !self.options.stable {
-                return Ok(found);
-            }
-            let mut other = state.clone();
-            let lines = self.model.parts().iter().filter_map(|part| Some((part.name(), part.line()?)));
-            let folds = lines.filter_map(|(name, line)| Some((name, line.unfold(&mut other.q)?)));
-            let Some((name, s)) = folds.collect::<Vec<_>>().into_iter().next() else { return Ok(found) };
-            let why = format!("`{name}` is folded at {s:.4} m, inside an element");
-            other.lambda.fill(0.0);
-            let mut more = self.search(&mut other, false, true, true);
-            if more.is_err() {
-                // stiff lines that were laid anew are far from their length
-                let mut cold = State { lambda: vec![0.0; other.lambda.len()], ..other.clone() };
-                more = self.search(&mut cold, true, true, true);
-                other = cold;
-            }
-            found.add(&more.map_err(|e| StaticsError { why, ..e })?);
-            *state = other;
-        }
-        let why = "what was found is folded inside elements again and again";
-        Err(self.fail(state, why, found.iterations))
-    }
-
     /// Where Newton's method finds nothing from a guess: something may be free to move, or the guess is far away.
     fn find_otherwise(
         &mut self,
@@ -173,40 +120,50 @@ impl Statics<'_> {
         let mut found = Found { iterations: first.iterations, ..Found::default() };
         state.clone_from(&before);
         if self.set_free(state)
-            && let Ok(more) = self.search(state, cold, cold, true)
+            && let Ok(more) = self.search_unfolded(state, cold)
         {
             found.add(&more);
-            return self.unfold(state, found);
+            return Ok(found);
         }
         self.free.clear();
         if !self.loose {
             state.clone_from(&before);
             self.loose = true;
-            if let Ok(more) = self.search(state, cold, cold, true) {
+            if let Ok(more) = self.search_unfolded(state, cold) {
                 found.add(&more);
-                return self.unfold(state, found);
+                return Ok(found);
             }
             self.loose = false;
         }
         // what has nothing to hold it in some directions may still fall over in others
         let loose = std::mem::replace(&mut self.loose, true);
         if cold && self.options.stable {
-            state.clone_from(&before);
-            let c = self.creep(state, &mut found, true);
-            if c.is_ok()
-                && let Ok(mut found) = self.unfold(state, found)
-            {
-                let (judged, load) = (std::mem::take(&mut self.judged), self.load(&before));
-                if let Ok(Some(growth)) = self.grows(state, &judged, load) {
-                    found.flutter = found.flutter.max(growth.rate);
-                }
-                self.judged = judged;
+            let crept = self.creep_down(state, &before, found);
+            if let Some(found) = crept.or_else(|| self.find_bowed(state, &before, found)) {
                 return Ok(found);
             }
         }
         self.loose = loose;
         *state = before;
         Err(self.explain(state, first))
+    }
+
+    fn search_unfolded(&mut self, state: &mut State, cold: bool) -> Result<Found, StaticsError> {
+        let found = self.search(state, cold, cold, true)?;
+        self.unfold(state, found)
+    }
+
+    /// Creeps from a guess to a stable equilibrium that is folded nowhere.
+    pub(super) fn creep_down(&mut self, state: &mut State, from: &State, mut found: Found) -> Option<Found> {
+        state.clone_from(from);
+        self.creep(state, &mut found, true).ok()?;
+        let mut found = self.unfold(state, found).ok()?;
+        let (judged, load) = (std::mem::take(&mut self.judged), self.load(from));
+        if let Ok(Some(growth)) = self.grows(state, &judged, load) {
+            found.flutter = found.flutter.max(growth.rate);
+        }
+        self.judged = judged;
+        Some(found)
     }
 
     /// Moves the state from one equilibrium to that at time `t`: in one step if that converges, else in as many smaller

@@ -11,6 +11,7 @@ mod critical;
 mod disturbance;
 mod flow;
 mod follow;
+mod guess;
 mod leap;
 mod linear;
 mod mirror;

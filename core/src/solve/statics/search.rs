@@ -17,6 +17,9 @@ const RECOUPLED: u32 = 50;
 /// How often a correction is halved that leads through something.
 const HALVED: u32 = 30;
 
+/// Largest correction of positions, in lengths of the model.
+const FARTHEST: f64 = 10.0;
+
 /// Corrections, in parts of their tolerance, that may be left where rounding allows no less.
 const ROUNDED: f64 = 1e3;
 
@@ -155,9 +158,15 @@ impl Statics<'_> {
             }
         };
         let multipliers = d.split_off(self.model.velocities());
-        let size = self.size(&d);
+        let mut size = self.size(&d);
         if !size.is_finite() {
             return Err("the iteration left the finite numbers".into());
+        }
+        // what nothing holds yet would fall so deep that rounding of what stops it throws it aside
+        let leap = self.position_size(&d) / self.model.length();
+        if leap > FARTHEST {
+            d.iter_mut().for_each(|d| *d *= FARTHEST / leap);
+            size = self.size(&d);
         }
         for _ in 0..HALVED {
             if self.model.flips(&it.q, &d).is_none() {
@@ -221,13 +230,18 @@ impl Statics<'_> {
         let mut there = state.clone();
         (there.q, there.lambda) = (it.q.clone(), it.lambda.clone());
         let begin = self.clocks.start();
-        let judged = if self.options.stable {
+        // what is folded isn't an answer whether it is stable or not, and is unfolded by who asked to leave what is unstable
+        let folded = self.options.stable && leave && self.unfolded(&mut there.q.clone()).is_some();
+        let judged = if self.options.stable && !folded {
             self.judge(&there, it.last.as_deref(), load, found.pushes + 1)
         } else {
             self.check(&there, it.last.as_deref(), load)
         };
         self.clocks.stop(Phase::Stability, begin);
         let mut judged = judged.map_err(|e| e.to_string())?;
+        if folded {
+            judged.potential = self.judged.potential;
+        }
         if let Some(what) = &judged.driven {
             return Err(format!("the load drives what nothing holds: {what}"));
         }
@@ -244,7 +258,10 @@ impl Statics<'_> {
         there.a.clone_from(&self.a);
         there.aux.clone_from(&self.a);
         found.flutter = judged.flutter;
-        if cold && let Some(d) = self.grows(&there, &judged, load).map_err(|e| e.to_string())? {
+        if cold
+            && !folded
+            && let Some(d) = self.grows(&there, &judged, load).map_err(|e| e.to_string())?
+        {
             // about a least potential it is velocities that feed it, and no other equilibrium is that way
             if d.one_way && !judged.is_least() {
                 return Ok(Verdict::Leave(self.small(d.shape)));
