@@ -448,10 +448,14 @@ fn what_gives_way_does_not_hang_on_the_steps() {
 fn what_can_not_be_followed_is_said() {
     let long = long_line(1000, 20, 1e4);
     for (besides, said) in [("", 0), (long.as_str(), 1)] {
-        let h = simulate(parse(&arch(0.1, 2467.06, 1, &on_top(1.584, 0.0), besides)).scene())
-            .unwrap_or_else(|e| panic!("{e}"));
+        let file = parse(&arch(0.1, 2467.06, 1, &on_top(1.584, 0.0), besides));
+        let h = simulate(file.scene()).unwrap_or_else(|e| panic!("{e}"));
         let unseen = |w: &&String| w.contains("couldn't be followed");
         assert_eq!(h.warnings.iter().filter(unseen).count(), said, "{:?}", h.warnings);
         assert!(h.critical.is_empty(), "{:?}", h.critical);
+        // modes are those of the same path
+        let options = ModesOptions { count: 2, ..ModesOptions::default() };
+        let modal = modes(file.scene(), &options).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(modal.warnings.iter().filter(unseen).count(), said, "{:?}", modal.warnings);
     }
 }

@@ -434,3 +434,50 @@ fn what_friction_had_to_do_with_an_equilibrium_that_is_not_found_is_told() {
     let hangs = 100.0 * (50.0 - 150.0 * f64::tan(0.15));
     assert!((fairlead / hangs - 1.0).abs() < 0.03, "{fairlead} N instead of {hangs}");
 }
+
+/// What begins above a slope comes to lie below where it began, whichever way is down: ground that bears pushes straight up, to
+/// rounding of a force that is a million times its weight where a fall that nothing stops at first has gone deep.
+#[test]
+fn a_stone_comes_to_lie_below_where_it_began_and_stays() {
+    let slope: f64 = 0.3;
+    let (sin, cos) = slope.sin_cos();
+    let bed = format!("type = \"bed\"\nslope = {slope}");
+    let contact = format!(
+        "type = \"contact\"\nname = \"bed\"\nshape = {{ plane = {{ normal = [{}, 0, {cos}] }} }}",
+        -sin
+    );
+    for (on, aside) in [(&bed, 0.0), (&contact, 0.0), (&bed, 0.4), (&contact, 0.4)] {
+        let down = [9.81 * f64::sin(aside) * 0.8, -9.81 * f64::sin(aside) * 0.6, -9.81 * f64::cos(aside)];
+        let h = run(&format!(
+            r#"
+            run = {{ duration = 5, from_equilibrium = true }}
+            gravity = {down:?}
+            [[elements]]
+            type = "point_mass"
+            name = "stone"
+            mass = 10
+            marker = [0, 0, 0.3]
+            [[forces]]
+            type = "gravity"
+            [[forces]]
+            {on}
+            stiffness = 1e6
+            radius = 0.1
+            friction = {{ mu = 1, equilibrium = "laid" }}
+            [[records]]
+            type = "position"
+            of = "stone"
+            "#
+        ));
+        let x = ["x", "y", "z"].map(|k| last(&h, &format!("stone.{k}")));
+        // down from where it began until it lies a radius above the slope
+        let falls = (0.3 * cos - 0.1) / (sin * down[0] - cos * down[2]);
+        let right = [down[0] * falls, down[1] * falls, 0.3 + down[2] * falls];
+        println!("{aside}: {x:?} m instead of {right:?} m");
+        assert!((0..3).all(|i| (x[i] - right[i]).abs() < 5e-3), "{x:?}");
+        for k in ["x", "y", "z"] {
+            let all = h.column(&format!("stone.{k}")).expect("column");
+            assert!(all.iter().all(|x| (x - all[0]).abs() < 1e-9), "it moves on");
+        }
+    }
+}

@@ -39,7 +39,7 @@ pub struct LineariseOptions {
 /// # Errors
 /// The scene can't be built, has no equilibrium, or its run doesn't come to that time.
 pub fn linearise(scene: &Scene, options: &LineariseOptions) -> Result<Linearised, Error> {
-    find(scene, scene.build()?, options)
+    find(scene, scene.build()?, options, &mut |_| {})
 }
 
 /// What [`write_linearised`] leaves behind.
@@ -64,13 +64,18 @@ pub fn write_linearised(
 ) -> Result<LineariseOutcome, Error> {
     let (model, manifest) = prepare(file, warn)?;
     let folder = NewFolder::create(options.out.clone(), &format!("{}-linearised", file.name()))?;
-    let linearised = find(file.scene(), model, options).map_err(|e| e.in_file(file))?;
+    let linearised = find(file.scene(), model, options, warn).map_err(|e| e.in_file(file))?;
     let (folder, _lock) = folder.keep(file, &manifest, true)?;
     let report = files::write(&folder, file.title(), &linearised, warn)?;
     Ok(LineariseOutcome { folder, linearised, report })
 }
 
-fn find(scene: &Scene, model: Model, options: &LineariseOptions) -> Result<Linearised, Error> {
+fn find(
+    scene: &Scene,
+    model: Model,
+    options: &LineariseOptions,
+    warn: &mut dyn FnMut(&str),
+) -> Result<Linearised, Error> {
     if model.velocities() == 0 {
         return Err(Fault::new("there is nothing in this scene whose equations could be linearised").into());
     }
@@ -111,8 +116,9 @@ fn find(scene: &Scene, model: Model, options: &LineariseOptions) -> Result<Linea
         }
         time => {
             let model = steady(scene)?.unwrap_or(model);
-            let (state, _) = balance(scene, &model, time.unwrap_or(end), options.watch)?;
-            at(&model, &state)
+            let found = balance(scene, &model, time.unwrap_or(end), options.watch)?;
+            found.remarks.iter().for_each(|remark| warn(remark));
+            at(&model, &found.state)
         }
     }
 }

@@ -5,7 +5,7 @@ mod pictures;
 mod report;
 
 use crate::error::Error;
-use crate::run::{NewFolder, prepare, steady};
+use crate::run::{NewFolder, prepare, steady, unseen_by};
 use ropewalk_core::modes::{self as core, Critical, Mode, ModesError, OnLook};
 use ropewalk_core::statics::{Found, Statics, StaticsError};
 use ropewalk_core::{Model, SolveError, State};
@@ -143,10 +143,9 @@ fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'
         return Err(Fault::new(message).into());
     }
     let model = steady(scene)?.unwrap_or(model);
-    let mut warnings = Vec::new();
     let start = State { t: time, ..model.state() };
     core::check_at_rest(&model, &start, &scene.statics, run.frame)?;
-    let (state, search) = balance(scene, &model, time, options.watch)?;
+    let Balance { state, search, remarks: mut warnings } = balance(scene, &model, time, options.watch)?;
     let found = core::modes(&model, &state, &scene.statics, run.frame, options.count, look)?;
     if let Some(of) = found.of.filter(|of| *of < options.count) {
         let plural = if of == 1 { "one mode" } else { &format!("{of} modes") };
@@ -182,49 +181,43 @@ fn find(scene: &Scene, model: Model, options: &ModesOptions, look: &mut OnLook<'
     Ok(Modal { model, state, search, modes, unstable, critical, warnings })
 }
 
-/// The equilibrium at a time, as laid if that is one, and else as it was found.
-pub(crate) fn balance(
-    scene: &Scene,
-    model: &Model,
-    time: f64,
-    watch: Watch,
-) -> Result<(State, Option<Found>), Error> {
+/// An equilibrium of a scene.
+pub(crate) struct Balance {
+    pub state: State,
+    /// How it was found; `None` if the scene was in balance as laid.
+    pub search: Option<Found>,
+    /// What one should know of the way there.
+    pub remarks: Vec<String>,
+}
+
+/// The equilibrium at a time, as laid if that is one, and else as it was found: of statics scenes along the load path.
+pub(crate) fn balance(scene: &Scene, model: &Model, time: f64, watch: Watch) -> Result<Balance, Error> {
+    let in_balance = |state: &mut State| core::in_balance(model, state, &scene.statics, scene.run.frame);
     let mut state = model.state();
     state.v.fill(0.0);
     state.t = time;
-    if core::in_balance(model, &mut state, &scene.statics, scene.run.frame)? {
-        return Ok((state, None));
+    if in_balance(&mut state)? {
+        return Ok(Balance { state, search: None, remarks: Vec::new() });
     }
-    let found = equilibrium(scene, model, &mut state, time, watch)?;
-    Ok((state, Some(found)))
-}
-
-/// The equilibrium at a time: of statics scenes along the load path.
-fn equilibrium(
-    scene: &Scene,
-    model: &Model,
-    state: &mut State,
-    time: f64,
-    watch: Watch,
-) -> Result<Found, Error> {
     let no_memory = |e: SolveError| Error::Modes(ModesError::Solver(e));
     let mut search = Statics::relative(model, &scene.statics, scene.run.frame).map_err(no_memory)?;
     search.stop_if(move || watch.is_over());
     if scene.run.analysis == Analysis::Dynamics || time == 0.0 {
-        return Ok(search.find(state, true)?);
+        let found = search.find(&mut state, true)?;
+        return Ok(Balance { state, search: Some(found), remarks: Vec::new() });
     }
     let steps = scene.statics.steps.max(1);
     state.t = 0.0;
     let mut sum = Found::default();
     let mut unloaded = state.clone();
-    if core::in_balance(model, &mut unloaded, &scene.statics, scene.run.frame)? {
-        *state = unloaded;
+    if in_balance(&mut unloaded)? {
+        state = unloaded;
     } else {
-        sum = search.find(state, true)?;
+        sum = search.find(&mut state, true)?;
     }
     for k in 1..=steps {
-        let found: Result<Found, StaticsError> = search.follow(state, time * k as f64 / steps as f64);
+        let found: Result<Found, StaticsError> = search.follow(&mut state, time * k as f64 / steps as f64);
         sum.add(&found?);
     }
-    Ok(sum)
+    Ok(Balance { state, search: Some(sum), remarks: unseen_by(&search) })
 }

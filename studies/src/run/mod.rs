@@ -32,7 +32,7 @@ pub(crate) use recorder::Recorder;
 use recorder::Warnings;
 pub(crate) use scenery::Scenery;
 pub(crate) use shapes::{Shape, last as last_shape, read as read_shapes};
-pub(crate) use start::{Started, steady};
+pub(crate) use start::{Started, steady, unseen_by};
 pub(crate) use summary::Ending;
 pub use summary::{Counts, CriticalLoad, EnergyTotals, Happened, ProfileEntry, Status, Summary};
 pub use view::{page_of, report_of};

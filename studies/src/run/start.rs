@@ -445,7 +445,7 @@ fn crossed(before: Option<f64>, now: f64, direction: i8) -> bool {
 }
 
 /// Where the path of equilibria was left for a leap.
-fn unseen_by(search: &Statics<'_>) -> Vec<String> {
+pub(crate) fn unseen_by(search: &Statics<'_>) -> Vec<String> {
     let stretch = |[from, to]: &[f64; 2]| {
         format!(
             "between {from:.6} and {to:.6} of the load the equilibrium moved farther than its path explains, and the path there \

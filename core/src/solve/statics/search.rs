@@ -17,9 +17,6 @@ const RECOUPLED: u32 = 50;
 /// How often a correction is halved that leads through something.
 const HALVED: u32 = 30;
 
-/// Largest correction of positions, in lengths of the model.
-const FARTHEST: f64 = 10.0;
-
 /// Corrections, in parts of their tolerance, that may be left where rounding allows no less.
 const ROUNDED: f64 = 1e3;
 
@@ -158,15 +155,9 @@ impl Statics<'_> {
             }
         };
         let multipliers = d.split_off(self.model.velocities());
-        let mut size = self.size(&d);
+        let size = self.size(&d);
         if !size.is_finite() {
             return Err("the iteration left the finite numbers".into());
-        }
-        // what nothing holds yet would fall so deep that rounding of what stops it throws it aside
-        let leap = self.position_size(&d) / self.model.length();
-        if leap > FARTHEST {
-            d.iter_mut().for_each(|d| *d *= FARTHEST / leap);
-            size = self.size(&d);
         }
         for _ in 0..HALVED {
             if self.model.flips(&it.q, &d).is_none() {
