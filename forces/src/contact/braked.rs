@@ -56,28 +56,31 @@ impl Contact {
         let stretch = dot(&slope, &slope).sqrt();
         let (t, n) = (seen(&slope).map(|x| x / stretch), pressed.n);
         let (share, rise) = brake.share(stretch - 1.0);
-        let used = -brake.way * friction.mu;
+        // what of its weight a slack line would slide down by
+        let up = seen(&brake.up);
+        let (rises, steep) = (dot(&n, &up).max(0.1), dot(&t, &up));
+        let hold = (steep / rises).clamp(-friction.mu, friction.mu);
+        let holds = hold.abs() < friction.mu;
+        let most = -brake.way * friction.mu - hold;
         // sideways it lies where it lay, as far as tension doesn't straighten it
         let side = friction.mu / l;
-        let taut = share.max(0.0);
-        let loose = 1.0 - taut;
+        let loose = 1.0 - share.abs();
         let off = minus(&self.fixed.place(frame, &group.station(cell).x(at)), &three(own, 1));
         let across = |x: &V3<f64>| -> V3<f64> {
             let (along, normal) = (dot(x, &t), dot(x, &n));
             std::array::from_fn(|i| x[i] - along * t[i] - normal * n[i])
         };
         let aside = across(&off).map(|x| if own[0] == 0.0 { 0.0 } else { side * x });
-        // what a slack line would slide down by
-        let borne = self.borne(&seen(&brake.up), &n);
-        let slack: V3<f64> = std::array::from_fn(|i| borne[i] - aside[i]);
-        let by_normal: V3<f64> = std::array::from_fn(|i| loose * slack[i] + used * share * t[i]);
+        let pull = hold + most * share;
+        let by_normal: V3<f64> = std::array::from_fn(|i| pull * t[i] - loose * aside[i]);
         let force = pressed.normal;
         // rows by components of the slope: what is along it strains, what is across turns
         let by_slope: M3 = std::array::from_fn(|i| {
             std::array::from_fn(|j| {
                 let turn = (delta(i, j) - t[i] * t[j]) / stretch;
-                let strain = (used * t[i] - if share > 0.0 { slack[i] } else { 0.0 }) * rise * t[j];
-                force * (used * share * turn + strain)
+                let tilt = if holds { (up[j] - steep * t[j]) / (rises * stretch) } else { 0.0 };
+                let strain = (most * t[i] + share.signum() * aside[i]) * rise * t[j];
+                force * (pull * turn + (1.0 - share) * t[i] * tilt + strain)
             })
         });
         let by_place: M3 = std::array::from_fn(|i| {

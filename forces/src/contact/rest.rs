@@ -114,7 +114,7 @@ impl Contact {
     }
 
     /// The force along the ground per normal force, with which what is pressed is borne upright, as far as friction could.
-    pub(super) fn borne(&self, up: &V3<f64>, n: &V3<f64>) -> V3<f64> {
+    fn borne(&self, up: &V3<f64>, n: &V3<f64>) -> V3<f64> {
         let rises = dot(up, n);
         let (Some(friction), true) = (&self.law.friction, rises > 0.0) else { return [0.0; 3] };
         let force: V3<f64> = std::array::from_fn(|i| up[i] / rises - n[i]);

@@ -50,8 +50,10 @@ impl Statics<'_> {
             if !self.model.settle(state) {
                 break;
             }
+            let settled = state.clone();
             let more = self.search(state, false, false, true).and_then(|more| self.unfold(state, more));
-            let more = more.or_else(|_| self.seek(state, true));
+            let more =
+                more.or_else(|_| self.search_rubbing(state, &settled)).or_else(|_| self.seek(state, true));
             let more = more.map_err(|e| {
                 let why = format!(
                     "{}, now that friction has taken hold as its `equilibrium` says: on a bed, what nothing pulls lies as it was `laid`",
@@ -64,6 +66,22 @@ impl Statics<'_> {
             found.flutter = 0.0;
         }
         Ok(found)
+    }
+
+    /// The equilibrium next to one that friction has taken hold of, whether it seems to be stable or not: what rubs has no linear
+    /// motion that could tell.
+    fn search_rubbing(&mut self, state: &mut State, settled: &State) -> Result<Found, StaticsError> {
+        state.clone_from(settled);
+        let found = self.search(state, false, false, false)?;
+        if std::mem::take(&mut self.unstable) > 0 {
+            let doubt =
+                "whether it is stable can't be told by linear motions, now that friction has taken hold";
+            self.doubt.get_or_insert_with(|| doubt.into());
+        }
+        match self.unfolded(&mut state.q.clone()) {
+            Some(_) => Err(self.fail(state, "what was found is folded inside elements", found.iterations)),
+            None => Ok(found),
+        }
     }
 
     /// Why nothing was found, where dry friction would have come later: on a slope a slack line may slide and fold without it.
