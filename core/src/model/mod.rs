@@ -476,14 +476,14 @@ impl Model {
         });
     }
 
-    /// Lets terms forget what held, before an equilibrium is looked for from a guess.
-    pub(crate) fn let_go(&self, state: &mut State) {
-        self.remembering().for_each(|term| term.let_go(&mut state.internal));
-    }
-
     /// The same of an equilibrium; whether it is another one now.
     pub(crate) fn settle(&self, state: &mut State) -> bool {
         self.let_remember(state, |term, at, memory| term.settle(at, memory))
+    }
+
+    /// Lets terms forget what held, before an equilibrium is looked for from a guess.
+    pub(crate) fn let_go(&self, state: &mut State) {
+        self.remembering().for_each(|term| term.let_go(&mut state.internal));
     }
 
     /// Why a term can't tell what has become of what it remembers, if one can't.

@@ -226,7 +226,7 @@ fn tangents_of_friction_that_a_pull_uses_up_are_exact() {
     }
 }
 
-/// What lies on a slope is borne upright, as far as friction could; bristles take that over, and a brake fades to it.
+/// What lies on a slope is borne upright, as far as friction could; bristles take that over.
 #[test]
 fn ground_that_slopes_bears_upright() {
     for (tilt, mu, across) in [(0.2, 0.6, None), (0.2, 0.6, Some(0.9)), (0.5, 0.3, None)] {
