@@ -63,6 +63,16 @@ pub trait Remembers {
     fn lost(&self, _at: &At<'_>) -> Option<String> {
         None
     }
+    /// What can't tell how it was stretched after an accepted step, since it went to and fro within it, if there is such: a step
+    /// of error control is then repeated smaller. `far` says whether a way back [m] is too long for what has this velocity.
+    fn overran(
+        &self,
+        _before: &At<'_>,
+        _after: &At<'_>,
+        _far: &dyn Fn(usize, f64) -> bool,
+    ) -> Option<String> {
+        None
+    }
     /// The internal variable that counts on with an angle by which sections are labelled [rad], and that angle: where labels
     /// change and sections stay, their sum does.
     fn labels(&self, _q: &[f64]) -> Option<(usize, f64)> {

@@ -491,6 +491,16 @@ impl Model {
         self.remembering().find_map(|term| term.lost(at))
     }
 
+    /// What went to and fro within a step, so that a term can't tell what has become of what it remembers.
+    pub(crate) fn overran(
+        &self,
+        before: &At<'_>,
+        after: &At<'_>,
+        far: &dyn Fn(usize, f64) -> bool,
+    ) -> Option<String> {
+        self.remembering().find_map(|term| term.overran(before, after, far))
+    }
+
     /// What terms remember that counts on with labels of sections, and the angle of those.
     pub(crate) fn labels(&self, q: &[f64]) -> Vec<(usize, f64)> {
         self.remembering().filter_map(|term| term.labels(q)).collect()

@@ -303,6 +303,7 @@ impl Simulation {
             self.check_constraints()?;
             let now = self.state.at();
             let wrong = self.model.passes(&self.previous.at(), &now).or_else(|| self.model.lost(&now));
+            let wrong = wrong.or_else(|| self.overran());
             if let Some(why) = wrong {
                 self.turn_back(report.h, why)?;
                 continue;

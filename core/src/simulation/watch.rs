@@ -12,6 +12,8 @@ const PART: f64 = 1e-3;
 const CUT: f64 = 1.0 - 1e-6;
 /// A step that still goes through something at this part of the longest one goes through it however short it is.
 const SHORT: f64 = 1e-7;
+/// What may come back against friction in a step, in parts of what positions may be off by: it goes on as fast as it came.
+const BACK: f64 = 0.1;
 /// Steps after which a run has begun, and part of its time.
 const BEGUN: u64 = 50;
 const BEGUN_TIME: f64 = 0.05;
@@ -87,6 +89,15 @@ impl Simulation {
         control.h_next = if next > 0.0 { half.min(next) } else { 0.0 };
         control.limit = Limit::Ahead;
         Ok(())
+    }
+
+    /// What slid and turned round within the last step, and came back by so much that what it has gained on the way tells in
+    /// positions: its friction knew nothing of that.
+    pub(super) fn overran(&self) -> Option<String> {
+        let Stepping::Controlled { tolerance, .. } = self.integrator.options().stepping else { return None };
+        let norms = &self.work.norms;
+        let far = |v: usize, way: f64| !(way <= BACK * tolerance * norms.length_of(v));
+        self.model.overran(&self.previous.at(), &self.state.at(), &far)
     }
 
     /// Names the constraints that may be to blame for a step that failed, since they contradict each other there.

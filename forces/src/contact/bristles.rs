@@ -8,7 +8,10 @@ use super::term::Contact;
 use super::touch::{Pair, Touch};
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::rotation::{cross, log, then, transposed_times};
-use ropewalk_core::{Assembly, At, Leap, V3};
+use ropewalk_core::{Assembly, At, Leap, V3, dot};
+
+/// How far what slips may come back unseen, in parts of what bristles stretch: they would store as much.
+const BACK: f64 = 0.1;
 
 /// A bristle that holds: where it is on what touches, how that moves, and what it does.
 pub(super) struct Bristle {
@@ -236,6 +239,62 @@ impl Contact {
             {
                 see(&b.hold, pressed.normal);
             }
+        }
+    }
+
+    /// Whether something that slips has turned round in a step, and come back farther than `far` allows and than bristles stretch:
+    /// these are moved at the ends of steps, and went on pulling it the way it went.
+    pub(super) fn came_back(
+        &self,
+        before: &At<'_>,
+        after: &At<'_>,
+        far: &dyn Fn(usize, f64) -> bool,
+    ) -> bool {
+        let (frame, mut scratch) = (self.fixed.frame(after), Scratch::default());
+        let from = self.fixed.frame(before);
+        for group in &self.groups {
+            let Some(Bristles { grip, cells: count, .. }) = group.bristles else { continue };
+            let mut cells = self.press(group, &frame, after, &mut scratch);
+            for (cell, pressed) in cells[..count].iter_mut().enumerate() {
+                if !pressed.settle() {
+                    continue;
+                }
+                let Some(b) = self.bristle(group, cell, pressed, &frame, after, after.internal) else {
+                    continue;
+                };
+                let n = &pressed.n;
+                let along = |u: V3<f64>| -> V3<f64> {
+                    let normal = dot(&u, n);
+                    std::array::from_fn(|i| u[i] - normal * n[i])
+                };
+                let u = along(b.pair.velocity(n));
+                if !b.hold.comes_back(&grip, &u) {
+                    continue;
+                }
+                let was = along(self.pair(&b.held, group.radius(), &from, before).velocity(n));
+                // what came back before needn't turn: its limit falls
+                if dot(&u, &was) > 0.0 {
+                    continue;
+                }
+                let (speed, change) = (dot(&u, &u).sqrt(), minus(&u, &was));
+                // by a constant acceleration
+                let way = 0.5 * speed * speed * (after.t - before.t) / dot(&change, &change).sqrt();
+                let gives = BACK * dot(&b.hold.stretch, &b.hold.stretch).sqrt();
+                if !(way <= gives) && self.velocity_of(&b.held).is_some_and(|v| far(v, way)) {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    /// A velocity of what touches, or of the shape where that stands still.
+    fn velocity_of(&self, held: &Held) -> Option<usize> {
+        match (held, self.fixed.seat) {
+            (Held::Moves { v, .. } | Held::Beside { v, .. } | Held::Lever { v, .. }, _) => Some(*v),
+            (Held::Between { v, .. }, _) => Some(v[0]),
+            (Held::Ground(_), Seat::Body { v, .. }) => Some(v),
+            (Held::Ground(_), Seat::Ground) => None,
         }
     }
 

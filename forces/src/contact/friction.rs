@@ -256,6 +256,14 @@ impl Hold {
         Slopes { by_s: [[0.0; 3]; 3], by_x: self.by_x, by_u: self.by_u }
     }
 
+    /// Whether a place that slips at `u` comes back while its bristle is still stretched beyond what it can hold: it has turned
+    /// round on the way, where nobody looked.
+    pub(crate) fn comes_back(&self, grip: &Grip, u: &V3<f64>) -> bool {
+        let elastic: V3<f64> = std::array::from_fn(|i| self.trial[i] + grip.damping * u[i]);
+        let held = along(-grip.stiffness, &self.stretch);
+        dot(&elastic, u) > 0.0 && dot(&elastic, &elastic) > (1.0 + SLACK) * dot(&held, &held)
+    }
+
     /// Whether the force that it would have if it stuck has turned round since an iteration at which its place moved less
     /// by `du`, where the iteration moves places and velocities by these weights.
     pub(crate) fn turned(&self, grip: &Grip, du: &V3<f64>, w: Weights) -> bool {

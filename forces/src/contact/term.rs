@@ -230,6 +230,10 @@ impl Remembers for Contact {
     fn remember(&self, at: &At<'_>, memory: &mut [f64]) {
         self.move_anchors(at, memory);
     }
+    fn overran(&self, before: &At<'_>, after: &At<'_>, far: &dyn Fn(usize, f64) -> bool) -> Option<String> {
+        let turned = || format!("{}: what slid has turned round within a step", self.label);
+        self.came_back(before, after, far).then(turned)
+    }
     fn rests(&self) -> bool {
         self.law.friction.is_some_and(|f| f.equilibrium != AtRest::None)
     }

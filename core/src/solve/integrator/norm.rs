@@ -154,6 +154,11 @@ impl Norms {
         largest(&self.runs, |run| weighted_square(&self.weight[run.clone()], &d[run.clone()])).1
     }
 
+    /// The length of the part that has this velocity [m].
+    pub fn length_of(&self, v: usize) -> f64 {
+        self.groups[self.of[v] as usize].length
+    }
+
     /// The same of a vector that is nowhere stored.
     pub fn relative_of(&self, d: impl Fn(usize) -> f64) -> f64 {
         let square = |run: &Range<usize>| run.clone().map(|i| self.weight[i] * d(i).powi(2)).sum();
