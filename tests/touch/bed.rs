@@ -481,3 +481,64 @@ fn a_stone_comes_to_lie_below_where_it_began_and_stays() {
         }
     }
 }
+
+#[test]
+fn what_sits_on_a_line_without_a_size_leaves_the_bed_to_it() {
+    let moored = |on: &str| {
+        run(&format!(
+            r#"
+            run = {{ analysis = "statics" }}
+            water = {{}}
+            [[elements]]
+            type = "cable"
+            name = "line"
+            points = [[0, 0, -60], [180, 0, -60], [300, 0, 0]]
+            radius = 20
+            length = 315
+            elements = 40
+            section = {{ mass = 50, ea = 2e8, diameter = 0.09 }}
+            [[elements]]
+            type = "attachments"
+            name = "floats"
+            on = "line"
+            at = 200
+            spacing = 5
+            count = 4
+            mass = 50
+            volume = 0.3
+            [[elements]]
+            type = "point_mass"
+            name = "clump"
+            marker = "line@50%"
+            mass = 300
+            [[constraints]]
+            type = "spherical"
+            name = "a"
+            marker = "line.start"
+            [[constraints]]
+            type = "spherical"
+            name = "b"
+            marker = "line.end"
+            [[forces]]
+            type = "gravity"
+            [[forces]]
+            type = "buoyancy"
+            [[forces]]
+            type = "bed"
+            point = [0, 0, -60.045]
+            {on}
+            [[records]]
+            type = "touchdown"
+            of = "line"
+            on = "bed"
+            "#
+        ))
+    };
+    let (left_out, named) = (moored(""), moored(r#"on = ["line"]"#));
+    let name = "line.touchdown.grounded";
+    assert!(
+        last(&named, name) > 100.0 && last(&named, name) == last(&left_out, name),
+        "{}",
+        last(&named, name)
+    );
+}

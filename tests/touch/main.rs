@@ -4,6 +4,7 @@
 mod common;
 
 mod bed;
+mod coarse;
 mod contact;
 mod contact_along;
 mod feeding_contact;

@@ -120,6 +120,10 @@ pub trait Line: Send + Sync {
         let all = [Quantity::Tension, Quantity::Curvature, Quantity::Moment];
         places.iter().map(|s| all.map(|what| self.observe(what, *s, at).unwrap_or(f64::NAN))).collect()
     }
+    /// What one should know of it at the end of a run, in a sentence: such as that its mesh is too coarse.
+    fn remark(&self, _at: &At<'_>) -> Option<String> {
+        None
+    }
     /// Size of the axial force [N], by which Newton's method judges residuals: as [`Quantity::Tension`], or what is cheaper
     /// and of its order.
     fn pulls(&self, s: f64, at: &At<'_>) -> Option<f64> {

@@ -1,5 +1,6 @@
 //! A cable as a part of a model: its markers, its stations, what can be observed along it.
 
+mod coarse;
 mod readings;
 
 use super::CableModel;
@@ -410,6 +411,10 @@ impl Line for CablePart {
             Some([tension, r.curvature, self.moment(k, l, xi, r.moment, at)])
         };
         places.iter().map(|s| one(*s).unwrap_or([f64::NAN; 3])).collect()
+    }
+
+    fn remark(&self, at: &At<'_>) -> Option<String> {
+        self.coarse(at)
     }
 
     fn pulls(&self, s: f64, at: &At<'_>) -> Option<f64> {

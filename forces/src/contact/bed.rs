@@ -53,7 +53,7 @@ pub struct BedSpec {
     /// Name.
     #[serde(default = "named")]
     pub name: String,
-    /// Parts that can lie on it. Default: all that have a size.
+    /// Parts that can lie on it. Default: all but clumps and floats that sit on a cable or a body, and have no size of their own.
     #[serde(default)]
     pub on: Vec<String>,
     /// A point of the bed [m]; with a `grid`, what its lines and heights are counted from. Default: the origin.

@@ -108,7 +108,10 @@ impl ContactSpec {
                     let (mass, length) = (part.mass(), part.length());
                     let ea = part.slender().map_or(0.0, |s| s.ea);
                     let whole = format!("`{}`", part.name());
-                    let points = part.contact_points();
+                    // a clump without a size leaves touching to what it sits on
+                    let sits = self.on.is_empty() && self.radius.is_none() && part.seats().is_empty();
+                    let mut points = part.contact_points();
+                    points.retain(|p| !sits || p.radius > 0.0);
                     all.weights.extend(points.iter().map(|_| Weight {
                         mass,
                         length: 0.0,
@@ -216,7 +219,8 @@ impl ContactSpec {
             return Ok(());
         }
         let message = format!(
-            "{name} has no size to touch with: give the contact a `radius`, or the cable's section a `diameter`"
+            "{name} has no size to touch with: give the contact a `radius`, or the cable's section a `diameter`, or name what \
+             else touches in `on`"
         );
         Err(BuildError::at("radius", message))
     }

@@ -40,7 +40,7 @@ pub struct ContactSpec {
     /// Name.
     pub name: String,
     /// Parts in contact with the shape: cables, bodies with a hull, point masses. Default, without `points`: all
-    /// except the shape's own body.
+    /// except the shape's own body, and clumps and floats that sit on another part.
     #[serde(default)]
     pub on: Vec<String>,
     /// Single points in contact, such as corners of bodies: markers, each a sphere of the `radius`.

@@ -8,6 +8,17 @@ use crate::cable::output::{self, Reading, read};
 use crate::cable::transmitted::{self, Unstressed};
 use crate::cable::twisted::{self, Twisted};
 use ropewalk_core::{At, Line, Quantity, V3};
+use std::ops::Range;
+
+/// With what the means of these elements count at a place of the mesh.
+pub(super) fn means(of: Range<usize>, place: f64, mesh: &[f64]) -> [f64; 3] {
+    let (mut middle, mut length) = ([0.0; 3], [0.0; 3]);
+    for (i, k) in of.clone().enumerate() {
+        let [a, b] = [mesh[k], mesh[k + 1]];
+        (middle[i], length[i]) = (0.5 * (a + b) - place, b - a);
+    }
+    transmitted::weights(&middle[..of.len()], &length[..of.len()])
+}
 
 impl CablePart {
     /// The elastic force that element `k` of length `l` transmits [N].
@@ -52,28 +63,32 @@ impl CablePart {
             return self.by_strain(k, mesh[k + 1] - mesh[k], xi, at);
         }
         let size = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let next = self.breaks.partition_point(|b| *b <= k);
-        let (from, to) = (self.breaks[next - 1], self.breaks[next]);
-        // a parabola through the means of three elements, of fewer where there are no more
-        let count = (to - from).min(3);
-        let first = k.saturating_sub(1).clamp(from, to - count);
-        let place = mesh[k] + xi * (mesh[k + 1] - mesh[k]);
-        let (mut middle, mut length, mut along) = ([0.0; 3], [0.0; 3], [0.0; 3]);
-        for i in 0..count {
-            let [a, b] = [mesh[first + i], mesh[first + i + 1]];
-            (middle[i], length[i]) = (0.5 * (a + b) - place, b - a);
-            let force = transmits(first + i, b - a)?;
-            along[i] = (0..3).map(|c| force[c] * slope[c]).sum::<f64>() / size;
+        let (smooth, place) = (self.smooth(k), mesh[k] + xi * (mesh[k + 1] - mesh[k]));
+        let count = smooth.len();
+        let mut along = [0.0; 3];
+        for (along, k) in along.iter_mut().zip(smooth.clone()) {
+            let force = transmits(k, mesh[k + 1] - mesh[k])?;
+            *along = (0..3).map(|c| force[c] * slope[c]).sum::<f64>() / size;
         }
-        let weights = transmitted::weights(&middle[..count], &length[..count]);
+        let weights = means(smooth, place, &mesh);
         let tension: f64 = weights.iter().zip(along).map(|(w, t)| w * t).sum();
         if count > 1 {
             return Some(tension);
         }
         // one element has its strain to tell how the tension changes along it
-        let there = |xi: f64| self.by_strain(k, length[0], xi, at);
+        let there = |xi: f64| self.by_strain(k, mesh[k + 1] - mesh[k], xi, at);
         let [start, middle, end] = [there(0.0)?, there(0.5)?, there(1.0)?];
         Some(tension + there(xi)? - middle - 0.1 * (start - 2.0 * middle + end))
+    }
+
+    /// The elements around element `k` whose forces tell how the force changes along it: three, or fewer where it isn't
+    /// smooth.
+    pub(super) fn smooth(&self, k: usize) -> Range<usize> {
+        let next = self.breaks.partition_point(|b| *b <= k);
+        let (from, to) = (self.breaks[next - 1], self.breaks[next]);
+        let count = (to - from).min(3);
+        let first = k.saturating_sub(1).clamp(from, to - count);
+        first..first + count
     }
 
     /// The tension in element `k` of length `l` at `xi` as its strain there has it [N].
@@ -90,7 +105,7 @@ impl CablePart {
         CableParams { l, ea: s.ea, ei: s.ei.across, rho_a: s.mass }
     }
 
-    fn rest_of(&self, k: usize) -> Option<&[f64; 12]> {
+    pub(super) fn rest_of(&self, k: usize) -> Option<&[f64; 12]> {
         self.rest.as_ref().map(|r| &r[k])
     }
 
