@@ -455,6 +455,53 @@ fn statics_call_their_first_column_load_factor_everywhere() {
 }
 
 #[test]
+fn a_slack_line_that_could_lie_otherwise_is_said_once() {
+    let folder = folder();
+    for (name, how) in
+        [("still", "analysis = \"statics\""), ("moves", "duration = 0.1, from_equilibrium = true")]
+    {
+        let scene = format!(
+            r#"
+            run = {{ {how} }}
+            [[elements]]
+            type = "cable"
+            name = "line"
+            points = [[0, 0, -60], [180, 0, -60], [200, 0, 0]]
+            radius = 3
+            length = 300
+            elements = 30
+            section = {{ mass = 43.5, ea = 2e8, diameter = 0.09 }}
+            [[constraints]]
+            type = "spherical"
+            name = "anchor"
+            marker = "line.start"
+            [[constraints]]
+            type = "spherical"
+            name = "fairlead"
+            marker = "line.end"
+            [[forces]]
+            type = "gravity"
+            [[forces]]
+            type = "bed"
+            point = [0, 0, -60.045]
+            stiffness = 1e6
+            "#
+        );
+        let file = format!("{name}.toml");
+        std::fs::write(folder.path().join(&file), scene).unwrap();
+        let said = run(folder.path(), &["run", &file, "--no-report", "--no-plots"]);
+        assert_eq!(
+            (said.code, said.stderr.matches("could as well lie otherwise").count()),
+            (Some(0), 1),
+            "{}",
+            said.stderr
+        );
+        assert!(said.stderr.contains("`ei`") && said.stderr.contains("\"laid\""), "{}", said.stderr);
+        assert!(said.stderr.matches("warning").count() < 6, "{}", said.stderr);
+    }
+}
+
+#[test]
 fn shapes_tell_the_part_and_the_unstretched_arc_length_of_every_point() {
     let folder = folder();
     done(run(folder.path(), &["run", "swing.toml", "--out", "out"]));

@@ -77,6 +77,7 @@ impl Started {
             search.stop_if(move || watch.is_over());
             flutter = search.find(&mut state, true)?.flutter;
             remarks = remarks_on(&search);
+            remarks.dedup();
             remarks.extend(by_friction(&model));
         }
         let mut simulation = Simulation::from(model, state, &scene.solver, run.duration)?;
@@ -389,7 +390,7 @@ impl Done {
             self.critical = search.critical().to_vec();
             unseen_by(search).into_iter().for_each(|remark| self.remark(remark));
             let found = found?;
-            // of several free directions another mixture is found at every load: once is enough
+            // of several free directions of bodies another mixture is found at every load: once is enough
             let count = search.neutral().len();
             remarks_on(search).into_iter().skip(free.min(count)).for_each(|remark| self.remark(remark));
             free = free.max(count);
@@ -458,12 +459,18 @@ pub(crate) fn unseen_by(search: &Statics<'_>) -> Vec<String> {
 
 /// What one should know about the last equilibrium of a search.
 fn remarks_on(search: &Statics<'_>) -> Vec<String> {
-    let free = search.neutral().iter().map(|n| {
-        format!(
+    let free = search.neutral().iter().map(|n| match &n.line {
+        // said once of a line, in however many directions it can be laid
+        Some(line) => format!(
+            "`{line}` could as well lie otherwise: nothing holds its shape where it is slack, or on ground that doesn't rub, and \
+             this is one of many. Bending stiffness (`ei` of its section) would hold it, and on ground friction, which takes \
+             part in equilibria by `equilibrium = \"laid\"`"
+        ),
+        None => format!(
             "nothing holds the equilibrium in one direction, and nothing drives it there: {}. A constraint or a spring \
              against this motion would hold it",
             n.what
-        )
+        ),
     });
     free.chain(search.doubt().map(String::from)).collect()
 }

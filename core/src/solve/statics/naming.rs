@@ -5,23 +5,36 @@ use crate::algebra::rotation::cross;
 use crate::model::Model;
 use crate::model::marker::frame;
 use crate::model::node::{Node, NodeId, NodeKind};
+use crate::model::part::Part;
 use crate::model::twist::tangent;
 use nalgebra::{DMatrix, DVector};
 
 /// Part of a direction that the rigid motion that fits it best may miss.
 const RIGID: f64 = 1e-2;
 
-/// What moves in a direction, and how.
-pub(super) fn describe(model: &Model, q: &[f64], shape: &[f64]) -> String {
+/// The nodes that a direction moves.
+fn moved<'a>(model: &'a Model, shape: &[f64]) -> Vec<(usize, &'a Node)> {
     let length = model.length();
     let nodes: Vec<_> = model.nodes().iter().enumerate().collect();
     let largest = nodes.iter().map(|(_, n)| size_of(n, shape, length)).fold(0.0, f64::max);
-    let moving: Vec<(usize, &Node)> = nodes
-        .into_iter()
-        .filter(|(_, n)| {
-            !matches!(n.kind, NodeKind::Scalars(_)) && size_of(n, shape, length) > 1e-3 * largest
-        })
-        .collect();
+    let moves =
+        |n: &Node| !matches!(n.kind, NodeKind::Scalars(_)) && size_of(n, shape, length) > 1e-3 * largest;
+    nodes.into_iter().filter(|(_, n)| moves(n)).collect()
+}
+
+/// The line whose shape changes in a direction, if nothing else moves.
+pub(super) fn reshaped(model: &Model, q: &[f64], shape: &[f64]) -> Option<String> {
+    let moving = moved(model, shape);
+    let origin: V3<f64> = std::array::from_fn(|i| q[moving.first().map_or(0, |(_, n)| n.q) + i]);
+    let (.., left) = rigid_motion(q, shape, &moving, origin, model.length())?;
+    let on = |part: &dyn Part| moving.iter().all(|(k, _)| part.place_of(NodeId(*k as u32)).is_some());
+    let line = model.parts().iter().find(|part| part.line().is_some() && on(part.as_ref()))?;
+    (left > RIGID).then(|| line.name().to_string())
+}
+
+/// What moves in a direction, and how.
+pub(super) fn describe(model: &Model, q: &[f64], shape: &[f64]) -> String {
+    let (length, moving) = (model.length(), moved(model, shape));
     let who = names(model, &moving);
     if moving.is_empty() {
         return format!("{who} moves");

@@ -4,7 +4,7 @@
 //! Their eigenvalue is zero, so rounding decides about its sign. A finite push along one tells: it is held there, all
 //! else finds its equilibrium, and the force that holds it says whether it would come back, stay or go on.
 
-use super::naming::describe;
+use super::naming::{describe, reshaped};
 use super::outcome::{Neutral, StaticsError};
 use super::problem::Statics;
 use super::stability::MARGIN;
@@ -30,7 +30,8 @@ pub(super) enum Leaning {
 
 impl Neutral {
     pub(super) fn new(model: &Model, there: &State, shape: Vec<f64>) -> Self {
-        Neutral { what: describe(model, &there.q, &shape), shape }
+        let (what, line) = (describe(model, &there.q, &shape), reshaped(model, &there.q, &shape));
+        Neutral { what, line, shape }
     }
 }
 

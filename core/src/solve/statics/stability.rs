@@ -113,9 +113,10 @@ impl Statics<'_> {
                     out.way_out.get_or_insert(shape);
                 }
                 Leaning::Unknown => {
-                    let what = Neutral::new(self.model, there, shape).what;
-                    out.doubt =
-                        Some(format!("whether it is stable can't be told: {what}, as far as can be seen"));
+                    let free = Neutral::new(self.model, there, shape);
+                    let shaped = |line| format!("nothing seems to hold the shape of `{line}`");
+                    let what = free.line.map_or(format!("{}, as far as can be seen", free.what), shaped);
+                    out.doubt = Some(format!("whether it is stable can't be told: {what}"));
                 }
             }
         }
