@@ -1,5 +1,6 @@
 //! A bed whose height is known on a grid: smooth in between, with its exact distance.
 
+use super::hollows::Hollows;
 use super::shape::Gap;
 use ropewalk_core::{BuildError, V3, dot};
 use ropewalk_scene::file;
@@ -24,9 +25,9 @@ pub struct Heights {
     y: Vec<f64>,
     /// `h`, `h_x`, `h_y`, `h_xy` at each corner; along y first.
     corners: Vec<[f64; 4]>,
-    /// The steepest slope and the strongest curvature that it has [1, 1/m].
+    /// The steepest slope that it has.
     steepest: f64,
-    hollow: f64,
+    hollows: Hollows,
 }
 
 impl fmt::Debug for Heights {
@@ -109,8 +110,9 @@ impl Heights {
                 corners[i * y.len() + j][3] = hxy[i];
             }
         }
-        let mut grid = Heights { x, y, corners, steepest: 0.0, hollow: 0.0 };
-        grid.bound();
+        let mut grid = Heights { x, y, corners, steepest: 0.0, hollows: Hollows::default() };
+        let (steepest, hollow) = grid.bounds();
+        (grid.steepest, grid.hollows) = (steepest, Hollows::new(&grid.x, &grid.y, &grid.corners, hollow));
         Ok(grid)
     }
 
@@ -167,8 +169,8 @@ impl Heights {
         Heights::new(x, y, &z).map_err(|e| wrong(e.message))
     }
 
-    /// Bounds of slope and curvature, from nine places of every cell.
-    fn bound(&mut self) {
+    /// Bounds of slope and curvature of the whole, from nine places of every cell.
+    fn bounds(&self) -> (f64, f64) {
         let between = |w: &[f64]| [w[0], 0.5 * (w[0] + w[1]), w[1] - 1e-12 * (w[1] - w[0])];
         let (mut steepest, mut hollow) = (0.0_f64, 0.0_f64);
         for w in self.x.windows(2) {
@@ -181,7 +183,7 @@ impl Heights {
             }
         }
         // between those places a cubic rises a little above
-        (self.steepest, self.hollow) = (1.25 * steepest, 1.25 * hollow);
+        (1.25 * steepest, 1.25 * hollow)
     }
 
     /// The surface at a place.
@@ -231,7 +233,7 @@ impl Heights {
         if above > 0.0 && least >= reach {
             return None;
         }
-        if self.hollow * above.abs() > 0.5 {
+        if self.hollows.most * above.abs() > 0.5 {
             // too far away for a single nearest point
             let norm = a.hypot(b).hypot(1.0);
             let distance = if above > 0.0 { least } else { -least };
@@ -288,10 +290,11 @@ impl Heights {
         Some(Gap::flat(distance, [-a / norm, -b / norm, 1.0 / norm]))
     }
 
-    /// How hollow level surfaces are that are nearer than `reach` [1/m].
-    pub(super) fn hollow(&self, reach: f64) -> f64 {
-        let rest = 1.0 - self.hollow * reach;
-        if rest > 0.0 { self.hollow / rest } else { f64::INFINITY }
+    /// How hollow level surfaces are within `way` of a point and nearer than `reach` [1/m].
+    pub(super) fn hollow(&self, x: &V3<f64>, way: f64, reach: f64) -> f64 {
+        let hollow = self.hollows.within([&self.x, &self.y], [x[0], x[1]], way + reach);
+        let rest = 1.0 - hollow * reach;
+        if rest > 0.0 { hollow / rest } else { f64::INFINITY }
     }
 
     /// Corners and triangles to draw it.

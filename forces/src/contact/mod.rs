@@ -16,6 +16,7 @@ mod flowing;
 mod friction;
 mod group;
 mod heights;
+mod hollows;
 mod law;
 pub(crate) mod level;
 mod lines;

@@ -158,7 +158,7 @@ impl Shape {
             Shape::Plane | Shape::Ball { .. } | Shape::Cylinder { .. } | Shape::Cuboid { .. } => 0.0,
             Shape::Tube { .. } => 1.0 / (x[0].hypot(x[1]) - way).max(0.0),
             Shape::Mesh(mesh) => mesh.hollow(x, way, reach),
-            Shape::Heights(heights) => heights.hollow(reach),
+            Shape::Heights(heights) => heights.hollow(x, way, reach),
         }
     }
 

@@ -2,7 +2,9 @@
 
 use crate::random::Random;
 use ropewalk_core::testing::check_tangent;
-use ropewalk_core::{At, ContactSpan, Marker, Node, NodeKind, Remembers, SpanLine, Term, V3, Width, dot};
+use ropewalk_core::{
+    At, ContactSpan, Marker, Node, NodeKind, Remembers, Shows, SpanLine, Term, V3, Width, dot,
+};
 use ropewalk_forces::contact::{
     AtRest, Brake, Contact, ContactLaw, Damping, Friction, Grip, Heights, Shape, Stiffness,
 };
@@ -148,6 +150,61 @@ fn what_lies_along_a_plane_but_for_rounding_does_not_touch_it() {
         let at = At { t: 0.0, q: &q, v: &still, a: &still, internal: &[], relaxed: None };
         assert_eq!(contact.depths(&at).collect::<Vec<_>>(), [None], "{radius}");
     }
+}
+
+/// A flat with a ridge across it: what lies along the flat but for rounding touches it nowhere, and the ridge is found where it is.
+#[test]
+fn what_touches_a_ridge_on_a_flat_is_found_where_looking_everywhere_finds_it() {
+    let shape = grid(|x, _| 0.8 * (-(x - 4.0) * (x - 4.0)).exp() * if x > 2.5 { 1.0 } else { 0.0 });
+    let marker = Marker::Ground { point: [0.0; 3], axes: ropewalk_core::rotation::IDENTITY };
+    let (nodes, ..) = lying(shape.clone(), ContactLaw::default(), 0.0);
+    let radius = 0.0137;
+    let touching = |long: f64, q: &[f64; 12]| {
+        let line = SpanLine::Cubic { q: [0, 3, 6, 9], v: [0, 3, 6, 9], l: long };
+        let span = ContactSpan { line, radius, length: long, s: 0.0, tips: [false; 2], flow: None };
+        let stiffness = Stiffness { point: 0.0, per_length: 1e4, end: Some(0.0), area: None };
+        let all: (&[_], &[_]) = (&[], &[span]);
+        let contact =
+            Contact::new("bed", &nodes, shape.clone(), &marker, all, stiffness, ContactLaw::default())
+                .expect("contact");
+        let still = [0.0; 12];
+        let (at, mut shown) =
+            (At { t: 0.0, q, v: &still, a: &still, internal: &[], relaxed: None }, Vec::new());
+        contact.observe(&at, &mut shown);
+        let column = contact.columns().iter().position(|c| c.name == "length").expect("a length");
+        shown[column]
+    };
+    let level = |from: f64| [from, 3.0, radius, 1.0, 0.0, 0.0, from + 9.0, 3.0, radius, 1.0, 0.0, 0.0];
+    assert_eq!(touching(9.0, &level(-9.7)), 0.0);
+    let long = 17.0;
+    let mut r = Random(7);
+    let mut met = 0;
+    for _ in 0..60 {
+        let mut q = [0.0; 12];
+        for (k, x) in q.iter_mut().enumerate() {
+            *x = match k {
+                0 => -9.0 + r.number(1.0),
+                6 => 8.0 + r.number(1.0),
+                2 | 8 => radius + r.number(0.2),
+                3 | 9 => 1.0,
+                _ => r.number(0.1),
+            };
+        }
+        const LOOKS: usize = 20_000;
+        let deep = |k: usize| {
+            let xi = (k as f64 + 0.5) / LOOKS as f64;
+            let (s, rest) = (xi * xi * (3.0 - 2.0 * xi), 1.0 - xi);
+            let [a, b] = [long * xi * rest * rest, -long * xi * xi * rest];
+            let x: V3<f64> =
+                std::array::from_fn(|i| (1.0 - s) * q[i] + a * q[3 + i] + s * q[6 + i] + b * q[9 + i]);
+            shape.gap(&x, f64::INFINITY).is_some_and(|gap| gap.distance < radius)
+        };
+        let (found, right) =
+            (touching(long, &q), long * (0..LOOKS).filter(|k| deep(*k)).count() as f64 / LOOKS as f64);
+        met += usize::from(right > 0.0);
+        assert!((found - right).abs() < 4.0 * long / LOOKS as f64, "{found} instead of {right}: {q:?}");
+    }
+    assert!(met > 40, "{met} touched");
 }
 
 /// What lies level all along goes a way of its own, which has to be that of any shape.
