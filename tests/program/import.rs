@@ -41,6 +41,7 @@ ID  LineType AttachA AttachB UnstrLen NumSegs LineOutputs
 320     WtrDpth   water depth
 --------- OUTPUTS ---------
 FairTen1 AnchTen1 Point4pz
+END
 --------- need this line ---------
 ";
 
@@ -69,6 +70,7 @@ fn the_moorings_of_a_spar_have_the_tension_of_their_catenary() {
     let here = folder(&[("spar.txt", SPAR)]);
     let made = run(here.path(), &["import", "spar.txt", "--out", "spar.toml"]);
     assert!(made.stdout.contains("spar.toml: 2 line(s)"), "{}{}", made.stdout, made.stderr);
+    assert!(!made.stderr.contains("END"), "{}", made.stderr);
     let text = fs::read_to_string(here.path().join("spar.toml")).unwrap();
     // damping by the length of segments: two sections of one type
     assert!(text.contains("name = \"main\"") && text.contains("name = \"main-2\""), "{text}");
@@ -147,6 +149,12 @@ fn what_has_no_counterpart_is_refused_where_it_stands() {
     refused("2   main     2 ", "1   main     2 ", "another line of the deck has the number 1 too");
     refused("320     WtrDpth", "1 Currents\n320 WtrDpth", "current_profile.txt`, which the deck needs");
     refused("902.2    20      -", "", "this row ends before its unstretched length");
+    for units in [
+        "(name)    (m)    (kg/m)   (N)        (N-s/-)   (-) (-)  (-)  (-)   (-)\n",
+        "(#) (name)   (#)     (#)     (m)      (-)     (-)\n",
+    ] {
+        refused(units, "", "this row would be skipped as heads");
+    }
     refused("--------- OPTIONS", "--- RODS ---\nID\n(#)\n1 can\n--- OPTIONS", "there is no rod type `can`");
     refused("--------- LINES", "--------- ROPES", "no section of a MoorDyn deck has this name");
     let here = folder(&[("deck.txt", "nothing\n")]);

@@ -231,7 +231,13 @@ impl Remembers for Contact {
         self.move_anchors(at, memory);
     }
     fn overran(&self, before: &At<'_>, after: &At<'_>, far: &dyn Fn(usize, f64) -> bool) -> Option<String> {
-        let turned = || format!("{}: what slid has turned round within a step", self.label);
+        let turned = || {
+            format!(
+                "{}: what slid has turned round within a step. A larger `elastic_slip` of its friction gives way farther, and longer \
+                 steps follow it",
+                self.label
+            )
+        };
         self.came_back(before, after, far).then(turned)
     }
     fn rests(&self) -> bool {

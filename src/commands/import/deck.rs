@@ -102,6 +102,7 @@ impl<'a> Deck<'a> {
                 Section::Points => deck.points.push(row),
                 Section::Lines => deck.lines.push(row),
                 Section::Options => deck.options.push(row),
+                Section::Outputs if row.words[0].text.eq_ignore_ascii_case("end") => section = Section::End,
                 Section::Outputs => deck.outputs.push(row),
                 Section::Other(what) => {
                     let fault = deck.fault(&format!("{what} of a deck aren't taken over"), &row);
@@ -117,9 +118,16 @@ impl<'a> Deck<'a> {
         Ok(deck)
     }
 
-    /// The heads of version 1 are in another order.
+    /// Heads aren't numbers; those of version 1 are in another order.
     fn check_heads(&self, section: Section, row: &Row) -> Result<(), Fault> {
         let third = row.words.get(2).map(|w| w.text.to_lowercase());
+        let number = |k: usize| row.words.get(k).is_some_and(|w| w.text.parse::<f64>().is_ok());
+        if number(if matches!(section, Section::LineTypes | Section::RodTypes) { 1 } else { 0 }) {
+            let fault = self.fault("this row would be skipped as heads, and is none", row);
+            return Err(fault.with_help(
+                "a table of a deck begins with a row of names and a row of units: add what is missing, such as a row of `(-)`",
+            ));
+        }
         if section == Section::Lines && third.is_some_and(|head| head.starts_with("unstrlen")) {
             let fault = self.fault("this is a deck of MoorDyn's version 1", row);
             return Err(fault
