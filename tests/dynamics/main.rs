@@ -29,3 +29,4 @@ mod running;
 mod scales;
 mod singular;
 mod tolerance;
+mod torsion_springs;

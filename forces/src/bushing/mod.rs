@@ -1,23 +1,25 @@
 //! Springs and dampers between two frames, on rigid bodies and on cables with torsion: bushings, and torsion springs.
 
 pub(crate) mod frames;
+mod rotational;
 mod spec;
 
+pub use rotational::RotationalSpring;
 pub use spec::{BushingSpec, RotationalSpringSpec};
 
 use crate::signals::{change, least, now, rate, reach};
 use frames::{Frames, Pose, Wrench, between};
-use ropewalk_core::error::{finite, not_negative};
+use ropewalk_core::error::not_negative;
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, BuildError, Energy, Jet, Marker, Node, Pattern, Power, Signal, Term, Timed, V3,
+    Assembly, At, BuildError, Energy, Foresees, Jet, Marker, Node, Pattern, Power, Signal, Term, Timed, V3,
+    dot,
 };
-use std::f64::consts::{PI, TAU};
 
 /// A spring and damper in all directions: of the second marker's place `d` and rotation vector `φ` as seen from the first
 /// marker's axes, `F = -k d - c ḋ` and, from the energy `½ φ·κφ`, a moment that is `-κφ` for small angles.
 ///
-/// The rotation vector is the shorter way round, so `|φ|` stays below π; beyond, the moment jumps to the other side. Both
+/// The rotation vector is the shorter way round, so `|φ|` stays below π; a run that turns it farther ends there. Both
 /// bodies feel the force at the second marker's point, so momentum and angular momentum are kept whatever the distance.
 /// Use it for: rubber mounts, soft joints, a weld that gives.
 #[derive(Clone, Debug, PartialEq)]
@@ -193,125 +195,30 @@ impl Term for Bushing {
     fn timed(&self) -> Option<&dyn Timed> {
         if change(self.signals()) { Some(self) } else { None }
     }
+    fn foresees(&self) -> Option<&dyn Foresees> {
+        let turns = self.rotational_stiffness.iter().any(|k| least(k) != 0.0 || change(std::iter::once(k)));
+        if turns { Some(self) } else { None }
+    }
+}
+
+impl Foresees for Bushing {
+    fn step_limit(&self, _at: &At<'_>) -> f64 {
+        f64::INFINITY
+    }
+    fn passes(&self, before: &At<'_>, after: &At<'_>) -> Option<String> {
+        let [was, is] = [before, after].map(|at| seen(&self.frames.now(at)).phi);
+        (dot(&was, &is) < -1.0).then(|| {
+            format!(
+                "`{}` is turned by more than half a turn, where it would be shorter the other way round: a bushing doesn't count \
+                 turns. A `rotational_spring` beside a `revolute` joint does",
+                self.label
+            )
+        })
+    }
 }
 
 impl Timed for Bushing {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         Some(reach(self.signals(), t, h))
-    }
-}
-
-/// A spring and damper about an axis: `M = -κ (φ - φ_0) - c φ̇` about the first marker's third axis.
-///
-/// `φ` is the angle from the first marker's first axis to the second's, as seen along that axis. It isn't counted beyond
-/// half a turn from `φ_0`: there the moment jumps to the other side. It is meant beside a hinge, whose axis both markers
-/// share; the axis moves with the first marker. Use it for: torsion springs, the friction of a bearing.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RotationalSpring {
-    /// A name, such as `spring of the door`.
-    pub label: String,
-    /// Stiffness `κ` [N m/rad].
-    pub stiffness: Signal,
-    /// Damping `c` [N m s/rad].
-    pub damping: Signal,
-    /// Angle without moment `φ_0` [rad].
-    pub rest: Signal,
-    frames: Frames,
-}
-
-impl RotationalSpring {
-    /// A spring between two markers; set the damping afterwards.
-    ///
-    /// # Errors
-    /// Markers on the same body, or on what has no axes; numbers that are negative or not finite.
-    pub fn new(
-        label: impl Into<String>,
-        nodes: &[Node],
-        markers: [Marker; 2],
-        stiffness: impl Into<Signal>,
-        rest: impl Into<Signal>,
-    ) -> Result<Self, BuildError> {
-        let (label, stiffness, rest) = (label.into(), stiffness.into(), rest.into());
-        not_negative("stiffness", least(&stiffness))?;
-        finite("angle", &[rest.at(0.0)])?;
-        let frames = Frames::new(nodes, &markers, &label)?;
-        Ok(RotationalSpring { label, stiffness, damping: 0.0.into(), rest, frames })
-    }
-
-    fn signals(&self) -> [&Signal; 3] {
-        [&self.stiffness, &self.damping, &self.rest]
-    }
-
-    fn torsion(&self, t: f64) -> Torsion {
-        let [stiffness, damping, rest] = self.signals().map(|s| s.at(t));
-        Torsion { stiffness, damping, rest }
-    }
-}
-
-/// A torsion spring at an instant.
-struct Torsion {
-    stiffness: f64,
-    damping: f64,
-    rest: f64,
-}
-
-impl Torsion {
-    /// Angle from that without moment, and its rate.
-    fn turn<S: Jet>(&self, pose: &[Pose<S>; 2]) -> (S, S) {
-        let axes = pose.each_ref().map(|p| matrix(&p.axes));
-        let column = |k: usize, j: usize| -> V3<S> { std::array::from_fn(|i| axes[k][i][j]) };
-        let along = |a: &V3<S>, b: &V3<S>| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        let first = column(1, 0);
-        let (cosine, sine) = (along(&column(0, 0), &first), along(&column(0, 1), &first));
-        let angle = sine.atan2(cosine) - self.rest;
-        let angle = angle - ((angle.re() + PI) / TAU).floor() * TAU;
-        let spin: V3<S> = std::array::from_fn(|i| pose[1].omega[i] - pose[0].omega[i]);
-        (angle, along(&column(0, 2), &spin))
-    }
-}
-
-impl Wrench for Torsion {
-    fn wrench<S: Jet>(&self, pose: &[Pose<S>; 2]) -> (V3<S>, V3<S>) {
-        let (angle, rate) = self.turn(pose);
-        let moment = -(angle * self.stiffness) - rate * self.damping;
-        let r = matrix(&pose[0].axes);
-        ([S::zero(); 3], std::array::from_fn(|i| r[i][2] * moment))
-    }
-}
-
-impl Term for RotationalSpring {
-    fn label(&self) -> String {
-        self.label.clone()
-    }
-    fn pattern(&self, p: &mut Pattern) {
-        p.clique(self.frames.dofs());
-    }
-    fn symmetric(&self) -> bool {
-        false
-    }
-    fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
-        self.frames.add(&self.torsion(at.t), at, out);
-    }
-    fn energy(&self, at: &At<'_>) -> Energy {
-        let torsion = self.torsion(at.t);
-        let (angle, _) = torsion.turn(&self.frames.now(at));
-        Energy { potential: 0.5 * torsion.stiffness * angle * angle, ..Energy::default() }
-    }
-    fn power(&self, at: &At<'_>) -> Power {
-        let torsion = self.torsion(at.t);
-        let (angle, spin) = torsion.turn(&self.frames.now(at));
-        // whoever changes stiffness and angle works on the moment
-        let supplied = 0.5 * rate(&self.stiffness, at.t) * angle * angle
-            - torsion.stiffness * angle * rate(&self.rest, at.t);
-        Power { dissipated: torsion.damping * spin * spin, supplied, ..Power::default() }
-    }
-    fn timed(&self) -> Option<&dyn Timed> {
-        if change(self.signals().into_iter()) { Some(self) } else { None }
-    }
-}
-
-impl Timed for RotationalSpring {
-    fn reach(&self, t: f64, h: f64) -> Option<f64> {
-        Some(reach(self.signals().into_iter(), t, h))
     }
 }

@@ -107,7 +107,7 @@ impl ForceSpec for BushingSpec {
 }
 
 /// A torsion spring and damper about an axis, used with a `revolute` joint, or at the end of a cable with torsion
-/// (`section.gj`), which may lie on a swivel. Angles up to half a turn from the stress-free angle are valid.
+/// (`section.gj`), which may lie on a swivel. Whole turns count.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RotationalSpringSpec {
@@ -144,7 +144,9 @@ impl ForceSpec for RotationalSpringSpec {
         let angle = b.signal("angle", &self.angle, &kind::ANGLE)?;
         let damping = b.signal("damping", &self.damping, &kind::ROTATIONAL_DAMPING)?;
         not_negative("damping", least(&damping))?;
-        let mut spring = RotationalSpring::new(&self.name, b.nodes(), markers, stiffness, angle)?;
+        let memory = b.memory(&format!("angle of {}", self.name), 1);
+        let spring = RotationalSpring::new(&self.name, b.nodes(), markers, stiffness, angle)?;
+        let mut spring = spring.counting(memory);
         spring.damping = damping;
         b.term(Box::new(spring));
         Ok(())
