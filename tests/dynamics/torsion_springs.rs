@@ -3,7 +3,15 @@
 use ropewalk::scene::{Format, SceneFile};
 use ropewalk::{History, simulate};
 
+const SHOWN: &str = "[[records]]\ntype = \"force\"\nof = \"spring\"\n";
+
 fn hinged(more: &str) -> Result<History, String> {
+    let hinge =
+        "[[constraints]]\ntype = \"revolute\"\nname = \"hinge\"\nmarker = \"wheel\"\naxis = [0, 0, 1]\n";
+    scene(more, hinge)
+}
+
+fn scene(more: &str, hinge: &str) -> Result<History, String> {
     let text = format!(
         r#"
         gravity = [0, 0, 0]
@@ -14,11 +22,7 @@ fn hinged(more: &str) -> Result<History, String> {
         mass = 1
         inertia = [1, 1, 1]
         angular_velocity = [0, 0, 10]
-        [[constraints]]
-        type = "revolute"
-        name = "hinge"
-        marker = "wheel"
-        axis = [0, 0, 1]
+        {hinge}
         [[records]]
         type = "angular_velocity"
         of = "wheel"
@@ -60,12 +64,31 @@ fn a_torsion_spring_comes_to_rest_turns_away() {
     for wound in [0.0, -2.0] {
         let load = "[[forces]]\ntype = \"point_moment\"\nmarker = \"wheel\"\nmoment = [0, 0, 5]\n\
                     time = { table = { t = [0, 1], value = [0, 1] } }\n";
-        let run =
-            format!("{}{load}[run]\nanalysis = \"statics\"\n[statics]\nsteps = 10\n", spring(0.5, wound));
+        let run = format!(
+            "{}{load}[run]\nanalysis = \"statics\"\n[statics]\nsteps = 10\n{SHOWN}",
+            spring(0.5, wound)
+        );
         let history = hinged(&run).unwrap_or_else(|e| panic!("{e}"));
-        let (angle, right) = (history.last("wheel.phi3").expect("an angle"), 10.0 + wound);
+        let last = |name: &str| history.last(name).unwrap_or_else(|| panic!("no {name}"));
+        let (angle, right) = (last("wheel.phi3"), 10.0 + wound);
+        assert!((last("spring.angle") - right).abs() < 1e-6 && (last("spring.moment") + 5.0).abs() < 1e-6);
         let turns = (angle - right) / std::f64::consts::TAU;
         assert!((turns - turns.round()).abs() < 1e-6, "{angle} instead of {right}");
+    }
+}
+
+/// A wheel on a mount that turns with it: under a force and a moment the mount shows their opposites, in its own axes.
+#[test]
+fn a_bushing_shows_its_force_and_moment() {
+    let text = "[[forces]]\ntype = \"bushing\"\nname = \"spring\"\nmarker = \"wheel\"\naxis_x = [0, 0, 1]\naxis_y = [1, 0, 0]\n\
+                stiffness = [100, 200, 300]\nrotational_stiffness = [20, 30, 40]\n\
+                [[forces]]\ntype = \"point_force\"\nmarker = \"wheel\"\nforce = [1, 2, 3]\n\
+                [[forces]]\ntype = \"point_moment\"\nmarker = \"wheel\"\nmoment = [0, 0, 0.7]\n\
+                [run]\nanalysis = \"statics\"\n";
+    let history = scene(&format!("{text}{SHOWN}"), "").unwrap_or_else(|e| panic!("{e}"));
+    for (name, right) in [("fx", -3.0), ("fy", -1.0), ("fz", -2.0), ("mx", -0.7), ("my", 0.0), ("mz", 0.0)] {
+        let found = history.last(&format!("spring.{name}")).expect("a column");
+        assert!((found - right).abs() < 1e-6, "{name}: {found}");
     }
 }
 

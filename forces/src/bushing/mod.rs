@@ -12,8 +12,8 @@ use frames::{Frames, Pose, Wrench, between};
 use ropewalk_core::error::not_negative;
 use ropewalk_core::rotation::{cross, matrix, times, transposed_times};
 use ropewalk_core::{
-    Assembly, At, BuildError, Energy, Foresees, Jet, Marker, Node, Pattern, Power, Signal, Term, Timed, V3,
-    dot,
+    Assembly, At, BuildError, Column, Energy, Foresees, Jet, Marker, Node, Pattern, Power, Shows, Signal,
+    Term, Timed, V3, dot,
 };
 
 /// A spring and damper in all directions: of the second marker's place `d` and rotation vector `φ` as seen from the first
@@ -195,9 +195,25 @@ impl Term for Bushing {
     fn timed(&self) -> Option<&dyn Timed> {
         if change(self.signals()) { Some(self) } else { None }
     }
+    fn shows(&self) -> Option<&dyn Shows> {
+        Some(self)
+    }
     fn foresees(&self) -> Option<&dyn Foresees> {
         let turns = self.rotational_stiffness.iter().any(|k| least(k) != 0.0 || change(std::iter::once(k)));
         if turns { Some(self) } else { None }
+    }
+}
+
+impl Shows for Bushing {
+    fn columns(&self) -> Vec<Column> {
+        let of = |names: [&str; 3], unit: &'static str| names.map(|name| Column::new(name, unit));
+        [of(["fx", "fy", "fz"], "N"), of(["mx", "my", "mz"], "N m")].concat()
+    }
+    fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
+        let pose = self.frames.now(at);
+        let (force, moment) = self.mount(at.t).wrench(&pose);
+        let axes = matrix(&pose[0].axes);
+        out.extend(transposed_times(&axes, &force).into_iter().chain(transposed_times(&axes, &moment)));
     }
 }
 

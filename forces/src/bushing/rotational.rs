@@ -5,7 +5,8 @@ use crate::signals::{change, least, rate, reach};
 use ropewalk_core::error::{finite, not_negative};
 use ropewalk_core::rotation::matrix;
 use ropewalk_core::{
-    Assembly, At, BuildError, Energy, Jet, Marker, Node, Pattern, Power, Remembers, Signal, Term, Timed, V3,
+    Assembly, At, BuildError, Column, Energy, Jet, Marker, Node, Pattern, Power, Remembers, Shows, Signal,
+    Term, Timed, V3,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -137,11 +138,25 @@ impl Term for RotationalSpring {
             - torsion.stiffness * angle * rate(&self.rest, at.t);
         Power { dissipated: torsion.damping * spin * spin, supplied, ..Power::default() }
     }
+    fn shows(&self) -> Option<&dyn Shows> {
+        Some(self)
+    }
     fn remembers(&self) -> Option<&dyn Remembers> {
         if self.memory.is_some() { Some(self) } else { None }
     }
     fn timed(&self) -> Option<&dyn Timed> {
         if change(self.signals().into_iter()) { Some(self) } else { None }
+    }
+}
+
+impl Shows for RotationalSpring {
+    fn columns(&self) -> Vec<Column> {
+        vec![Column::new("angle", "rad"), Column::new("moment", "N m")]
+    }
+    fn observe(&self, at: &At<'_>, out: &mut Vec<f64>) {
+        let torsion = self.torsion(at);
+        let (turn, rate) = torsion.turn(&self.frames.now(at));
+        out.extend([turn + torsion.rest, -torsion.stiffness * turn - torsion.damping * rate]);
     }
 }
 

@@ -11,7 +11,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A spring and damper in all six directions between two rigid bodies, or a body and space: a rubber mount, a soft
-/// joint. There is no force in the initial position. Rotations up to half a turn are valid.
+/// joint. There is no force in the initial position. Rotations up to half a turn are valid: a run ends there. A record of type
+/// `force` shows the force and the moment on `marker`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BushingSpec {

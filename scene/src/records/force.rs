@@ -9,7 +9,9 @@ use serde::{Deserialize, Serialize};
 
 /// Output of a force. Of a contact: columns `drum.fx`, `.fy` and `.fz`, the force of the shape on all that touches it
 /// in N, `.normal`, the sum of what presses in N, `.depth`, the deepest point in m, and `.points`, how many touch. Of
-/// a spring: `mooring.tension` in N.
+/// a spring: `mooring.tension` in N. Of a bushing: `mount.fx`, `.fy`, `.fz` and `.mx`, `.my`, `.mz`, the force in N and the
+/// moment in N m on its `marker`, in the axes of the stiffnesses. Of a rotational spring: `closer.angle` from the initial position
+/// in rad, whole turns included, and `.moment`, that on its `marker` in N m.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ForceRecordSpec {
