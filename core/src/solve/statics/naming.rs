@@ -25,7 +25,9 @@ fn moved<'a>(model: &'a Model, shape: &[f64]) -> Vec<(usize, &'a Node)> {
 /// The line whose shape changes in a direction, if nothing else moves.
 pub(super) fn reshaped(model: &Model, q: &[f64], shape: &[f64]) -> Option<String> {
     let moving = moved(model, shape);
-    let origin: V3<f64> = std::array::from_fn(|i| q[moving.first().map_or(0, |(_, n)| n.q) + i]);
+    // what only scalars do, such as the angle of a wheel, changes no shape
+    let first = moving.first()?.1.q;
+    let origin: V3<f64> = std::array::from_fn(|i| q[first + i]);
     let (.., left) = rigid_motion(q, shape, &moving, origin, model.length())?;
     let on = |part: &dyn Part| moving.iter().all(|(k, _)| part.place_of(NodeId(*k as u32)).is_some());
     let line = model.parts().iter().find(|part| part.line().is_some() && on(part.as_ref()))?;
