@@ -141,6 +141,19 @@ fn what_contradicts_only_on_the_way_ends_there() {
     }
 }
 
+/// A crank that starts in line with its rod, which holds it from then on: what drives it is named, too.
+#[test]
+fn what_drives_into_a_contradiction_is_named() {
+    let crank = "[[constraints]]\nname='hinge'\ntype='revolute'\nmarker='b'\naxis=[0,0,1]\n\
+                 [[constraints]]\nname='rod'\ntype='distance'\nmarker='b.e'\nto=[0.5,0,0]\n\
+                 [[constraints]]\nname='motor'\ntype='rotation'\nmarker='b'\naxis=[0,0,1]\nmotion='turn'\n";
+    let body = BODY.replace("name='b'", "name='b'\npoints={ e = [0.2, 0, 0] }");
+    for (setting, options) in settings() {
+        let said = trouble(&[&body, SPIN, crank].concat(), &options, 2.0).unwrap_or_default();
+        assert!(["`hinge`", "`rod`", "`motor`"].iter().all(|name| said.contains(name)), "{setting}: {said}");
+    }
+}
+
 /// The same things said twice are no contradiction.
 #[test]
 fn what_is_said_twice_runs() {

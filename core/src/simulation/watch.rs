@@ -68,10 +68,25 @@ impl Simulation {
             let one = *one;
             names.extend(r.constraints.iter().map(String::as_str).filter(|n| *n != one));
         }
-        let constraints = names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ");
+        let mut constraints = names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ");
+        if let Some(driver) = self.driver_of(&names) {
+            constraints += &format!(", to where `{driver}` drives them,");
+        }
         let error = StepError::Contradiction { t: self.state.t, constraints, off: worst };
         self.state.clone_from(&self.previous);
         Err(error)
+    }
+
+    /// What drives the same parts as these constraints hold, if none of them does.
+    fn driver_of(&self, names: &[&str]) -> Option<&str> {
+        let all = || self.model.constraints().iter();
+        let named = || all().filter(|c| names.contains(&c.name()));
+        if named().any(|c| c.moves()) {
+            return None;
+        }
+        let held: Vec<_> = named().flat_map(|c| c.nodes()).collect();
+        let driver = all().find(|c| c.moves() && c.nodes().iter().any(|node| held.contains(&node)))?;
+        Some(driver.name())
     }
 
     /// Goes back to the state before a step `h` in which something went where it can't, to repeat it half as long.
@@ -103,7 +118,10 @@ impl Simulation {
     /// Names the constraints that may be to blame for a step that failed, since they contradict each other there.
     pub(super) fn suspect(&self, error: StepError) -> StepError {
         let Some(redundancy) = self.model.redundancy() else { return error };
-        let who = format!("do the redundant constraints contradict each other here? {redundancy}");
+        let names: Vec<&str> = redundancy.constraints.iter().map(String::as_str).collect();
+        let drives =
+            self.driver_of(&names).map_or(String::new(), |driver| format!("; `{driver}` drives them"));
+        let who = format!("do the redundant constraints contradict each other here? {redundancy}{drives}");
         match error {
             StepError::NoConvergence { t, h, why, equation } => {
                 StepError::NoConvergence { t, h, why: format!("{why} ({who})"), equation }
