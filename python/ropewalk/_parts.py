@@ -1312,7 +1312,8 @@ class Parts:
         line comes to lie.
 
         name: Name. Default bed.
-        on: Parts that can lie on it. Default: all that have a size.
+        on: Parts that can lie on it. Default: all but clumps and floats that sit on a cable or a body, and have no
+            size of their own.
         point: A point of the bed [m]; with a `grid`, what its lines and heights are counted from. Default: the
             origin. Default [0.0, 0.0, 0.0].
         slope: By what angle it slopes [rad].
@@ -1373,7 +1374,8 @@ class Parts:
         rotational_damping: Sequence[Union[Mapping[str, Any], Number]] | None = None,
     ) -> Part:
         """A spring and damper in all six directions between two rigid bodies, or a body and space: a rubber mount, a
-        soft joint. There is no force in the initial position. Rotations up to half a turn are valid.
+        soft joint. There is no force in the initial position. Rotations up to half a turn are valid: a run ends
+        there. A record of type `force` shows the force and the moment on `marker`.
 
         name: Name.
         marker: The marker that is held.
@@ -1425,7 +1427,7 @@ class Parts:
         name: Name.
         shape: The shape.
         on: Parts in contact with the shape: cables, bodies with a hull, point masses. Default, without `points`: all
-            except the shape's own body.
+            except the shape's own body, and clumps and floats that sit on another part.
         points: Single points in contact, such as corners of bodies: markers, each a sphere of the `radius`.
         marker: Position of the shape: a point in space, or a marker on the rigid body that carries it. Default: the
             origin. Default [0.0, 0.0, 0.0].
@@ -1832,7 +1834,7 @@ class Parts:
         angle: Union[Mapping[str, Any], Number] | None = None,
     ) -> Part:
         """A torsion spring and damper about an axis, used with a `revolute` joint, or at the end of a cable with torsion
-        (`section.gj`), which may lie on a swivel. Angles up to half a turn from the stress-free angle are valid.
+        (`section.gj`), which may lie on a swivel. Whole turns count.
 
         name: Name.
         marker: The marker, on a rigid body or a cable with torsion.
@@ -2491,7 +2493,10 @@ class Parts:
     ) -> Part:
         """Output of a force. Of a contact: columns `drum.fx`, `.fy` and `.fz`, the force of the shape on all that
         touches it in N, `.normal`, the sum of what presses in N, `.depth`, the deepest point in m, and `.points`, how
-        many touch. Of a spring: `mooring.tension` in N.
+        many touch. Of a spring: `mooring.tension` in N. Of a bushing: `mount.fx`, `.fy`, `.fz` and `.mx`, `.my`,
+        `.mz`, the force in N and the moment in N m on its `marker`, in the axes of the stiffnesses. Of a rotational
+        spring: `closer.angle` from the initial position in rad, whole turns included, and `.moment`, that on its
+        `marker` in N m.
 
         of: Name of the force.
         name: Name in results. Default: that of the force.
