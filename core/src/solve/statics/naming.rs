@@ -22,7 +22,7 @@ fn moved<'a>(model: &'a Model, shape: &[f64]) -> Vec<(usize, &'a Node)> {
     nodes.into_iter().filter(|(_, n)| moves(n)).collect()
 }
 
-/// The line whose shape changes in a direction, if nothing else moves.
+/// The line without bending stiffness whose shape changes in a direction, if nothing else moves.
 pub(super) fn reshaped(model: &Model, q: &[f64], shape: &[f64]) -> Option<String> {
     let moving = moved(model, shape);
     // what only scalars do, such as the angle of a wheel, changes no shape
@@ -30,7 +30,8 @@ pub(super) fn reshaped(model: &Model, q: &[f64], shape: &[f64]) -> Option<String
     let origin: V3<f64> = std::array::from_fn(|i| q[first + i]);
     let (.., left) = rigid_motion(q, shape, &moving, origin, model.length())?;
     let on = |part: &dyn Part| moving.iter().all(|(k, _)| part.place_of(NodeId(*k as u32)).is_some());
-    let line = model.parts().iter().find(|part| part.line().is_some() && on(part.as_ref()))?;
+    let limp = |part: &dyn Part| part.slender().is_some_and(|line| line.ei == 0.0);
+    let line = model.parts().iter().find(|part| limp(part.as_ref()) && on(part.as_ref()))?;
     (left > RIGID).then(|| line.name().to_string())
 }
 

@@ -141,7 +141,7 @@ impl fmt::Display for Critical {
 pub struct Neutral {
     /// What moves and how, such as "`bar` turns about the axis (0, 0, 1) through (0, 0, 0) m".
     pub what: String,
-    /// The line whose shape changes, if nothing else moves.
+    /// The line without bending stiffness whose shape changes, if nothing else moves.
     pub line: Option<String>,
     /// The direction, as an increment.
     pub shape: Vec<f64>,
