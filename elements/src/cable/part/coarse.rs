@@ -18,6 +18,9 @@ const STRAIGHT: f64 = 0.1;
 const OFF: f64 = 1e-3;
 /// Below this share of the largest force in the cable its direction is that of rounding.
 const SLACK: f64 = 1e-3;
+/// What its size changes by at least along an element, in parts of it, where a line hangs or comes off the ground; around a drum
+/// it hardly does, and what presses there swings to and fro.
+const EVEN: f64 = 0.05;
 /// Where `EI κ²` is more than this share of the force, bending holds the element, and its force isn't along it.
 const STIFF: f64 = 0.1;
 
@@ -64,9 +67,9 @@ impl CablePart {
         let (mut off, mut worst, mut finest) = ([0.0; 3], (0.0, 0), f64::INFINITY);
         for k in self.layout.elements().filter(|k| bent(k) > STRAIGHT) {
             let (l, e, turn) = (length(k), self.dofs(k, at.q), bent(&k));
-            let (direction, largest) = self.directed(k, &mesh, &forces);
+            let (direction, [least, largest]) = self.directed(k, &mesh, &forces);
             let bends = self.layout.section(k).ei.across * (turn / l).powi(2);
-            if largest <= SLACK * most || bends > STIFF * largest {
+            if largest <= SLACK * most || bends > STIFF * largest || largest - least < EVEN * largest {
                 continue;
             }
             let (chord, stretch) = (natural(&e, 1.0 / l)[0], stretch(&e, l));
@@ -93,11 +96,11 @@ impl CablePart {
         })
     }
 
-    /// The mean direction of the force in element `k`, and its largest size there [N].
-    fn directed(&self, k: usize, mesh: &[f64], forces: &[V3<f64>]) -> (V3<f64>, f64) {
+    /// The mean direction of the force in element `k`, and its least and largest size there [N].
+    fn directed(&self, k: usize, mesh: &[f64], forces: &[V3<f64>]) -> (V3<f64>, [f64; 2]) {
         const POINTS: usize = 16;
         let around = self.smooth(k);
-        let (mut mean, mut largest) = ([0.0; 3], 0.0_f64);
+        let (mut mean, mut least, mut largest) = ([0.0; 3], f64::INFINITY, 0.0_f64);
         for j in 0..POINTS {
             let xi = (j as f64 + 0.5) / POINTS as f64;
             let weights = means(around.clone(), mesh[k] + xi * (mesh[k + 1] - mesh[k]), mesh);
@@ -105,11 +108,11 @@ impl CablePart {
                 |c: usize| weights.iter().zip(&forces[around.clone()]).map(|(w, f)| w * f[c]).sum::<f64>();
             let force = [of(0), of(1), of(2)];
             let size = norm(&force);
-            largest = largest.max(size);
+            (least, largest) = (least.min(size), largest.max(size));
             if size > 0.0 {
                 (0..3).for_each(|c| mean[c] += force[c] / (size * POINTS as f64));
             }
         }
-        (mean, largest)
+        (mean, [least, largest])
     }
 }
