@@ -79,7 +79,8 @@ fn tension(across: f64) -> f64 {
 /// By how much the tension at the fairlead is off, and what is said of the mesh.
 fn off(across: f64, elements: usize) -> (f64, Option<String>) {
     let (model, state) = chain(across, elements);
-    let said = model.remarks(&state.at()).into_iter().find(|text| text.contains("too long for how sharply"));
+    let said =
+        model.remarks_at_rest(&state.at()).into_iter().find(|text| text.contains("too long for how sharply"));
     (size(reaction(&model, &state, "fairlead")) / tension(across) - 1.0, said)
 }
 

@@ -120,7 +120,7 @@ pub trait Line: Send + Sync {
         let all = [Quantity::Tension, Quantity::Curvature, Quantity::Moment];
         places.iter().map(|s| all.map(|what| self.observe(what, *s, at).unwrap_or(f64::NAN))).collect()
     }
-    /// What one should know of it at the end of a run, in a sentence: such as that its mesh is too coarse.
+    /// What one should know of it at an equilibrium, in a sentence: such as that its mesh is too coarse.
     fn remark(&self, _at: &At<'_>) -> Option<String> {
         None
     }

@@ -532,10 +532,14 @@ impl Model {
         self.watchful().find_map(|term| term.passes(before, after))
     }
 
-    /// What one should know of its terms and its lines at the end of a run.
+    /// What one should know of its terms at the end of a run.
     pub fn remarks(&self, at: &At<'_>) -> Vec<String> {
-        let lines = self.parts.iter().filter_map(|part| part.line()?.remark(at));
-        self.terms.iter().filter_map(|t| t.shows()?.remark(at)).chain(lines).collect()
+        self.terms.iter().filter_map(|t| t.shows()?.remark(at)).collect()
+    }
+
+    /// What one should know of its lines at an equilibrium.
+    pub fn remarks_at_rest(&self, at: &At<'_>) -> Vec<String> {
+        self.parts.iter().filter_map(|part| part.line()?.remark(at)).collect()
     }
 
     /// The longest step from here that leaps over nothing that a term has ahead [s].

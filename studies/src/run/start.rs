@@ -79,6 +79,7 @@ impl Started {
             remarks = remarks_on(&search);
             remarks.dedup();
             remarks.extend(by_friction(&model));
+            remarks.extend(model.remarks_at_rest(&state.at()));
         }
         let mut simulation = Simulation::from(model, state, &scene.solver, run.duration)?;
         simulation.keep_audit(run.audit);
@@ -156,6 +157,7 @@ impl Started {
                 all.extend(unstable(done.flutter));
                 all.extend(done.remarks.iter().cloned().chain(by_friction(&done.model)));
                 all.extend(done.model.remarks(&done.state.at()));
+                all.extend(done.model.remarks_at_rest(&done.state.at()));
             }
             Started::Dynamics(s, flutter, _) => {
                 let c = s.work.counts;
