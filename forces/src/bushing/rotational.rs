@@ -176,8 +176,13 @@ impl Remembers for RotationalSpring {
     }
     fn lost(&self, at: &At<'_>) -> Option<String> {
         let change = self.angle(at) - self.last(at.internal)?;
-        (!(change.abs() <= MOST_CHANGE))
-            .then(|| format!("`{}` is turned so far at once that its turns can't be counted", self.label))
+        (!(change.abs() <= MOST_CHANGE)).then(|| {
+            format!(
+                "`{}` is turned so far at once that its turns can't be counted: take smaller steps, or let what turns it grow with the \
+                 load",
+                self.label
+            )
+        })
     }
 }
 
