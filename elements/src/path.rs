@@ -270,8 +270,8 @@ fn direction(from: V3<f64>, to: V3<f64>) -> (f64, V3<f64>) {
     (norm(d), unit(d))
 }
 
-/// The angle between two unit vectors, well also where it is small.
-fn angle(a: &V3<f64>, b: &V3<f64>) -> f64 {
+/// The angle between two vectors, well also where it is small.
+pub(crate) fn angle(a: &V3<f64>, b: &V3<f64>) -> f64 {
     norm(cross(a, b)).atan2(dot(a, b))
 }
 
@@ -283,6 +283,6 @@ fn unit(a: V3<f64>) -> V3<f64> {
 fn sub(a: V3<f64>, b: V3<f64>) -> V3<f64> {
     std::array::from_fn(|i| a[i] - b[i])
 }
-fn norm(a: V3<f64>) -> f64 {
+pub(crate) fn norm(a: V3<f64>) -> f64 {
     a.iter().map(|x| x * x).sum::<f64>().sqrt()
 }

@@ -7,6 +7,7 @@
 use super::CablePart;
 use super::readings::means;
 use crate::cable::shape::{hermite_slope, natural};
+use crate::path::{angle, norm};
 use ropewalk_core::algebra::lane::dot;
 use ropewalk_core::{At, Line, Part, V3};
 
@@ -24,14 +25,6 @@ const EVEN: f64 = 0.05;
 /// Where `EI κ²` is more than this share of the force, bending holds the element, and its force isn't along it.
 const STIFF: f64 = 0.1;
 
-fn norm(a: &V3<f64>) -> f64 {
-    dot(a, a).sqrt()
-}
-
-fn angle(a: &V3<f64>, b: &V3<f64>) -> f64 {
-    (dot(a, b) / (norm(a) * norm(b))).clamp(-1.0, 1.0).acos()
-}
-
 /// By how much an element turns from end to end, by way of its chord [rad].
 fn turn(e: &[f64; 12]) -> f64 {
     let [start, end]: [V3<f64>; 2] = [3, 9].map(|i| std::array::from_fn(|c| e[i + c]));
@@ -44,7 +37,7 @@ fn stretch(e: &[f64; 12], l: f64) -> f64 {
     let size = |xi: f64| {
         let c = hermite_slope(xi, 1.0 / l);
         let slope: V3<f64> = std::array::from_fn(|i| (0..4).map(|n| c[n] * e[3 * n + i]).sum());
-        norm(&slope)
+        norm(slope)
     };
     (size(0.0) + 4.0 * size(0.5) + size(1.0)) / 6.0
 }
@@ -63,7 +56,7 @@ impl CablePart {
         }
         let forces = (0..self.seats.len() - 1).map(|k| self.transmits(k, length(k), at));
         let forces: Vec<V3<f64>> = forces.map(|f| f.unwrap_or_default()).collect();
-        let most = forces.iter().map(norm).fold(0.0, f64::max);
+        let most = forces.iter().copied().map(norm).fold(0.0, f64::max);
         let (mut off, mut worst, mut finest) = ([0.0; 3], (0.0, 0), f64::INFINITY);
         for k in self.layout.elements().filter(|k| bent(k) > STRAIGHT) {
             let (l, e, turn) = (length(k), self.dofs(k, at.q), bent(&k));
@@ -74,7 +67,7 @@ impl CablePart {
             }
             let (chord, stretch) = (natural(&e, 1.0 / l)[0], stretch(&e, l));
             // where it goes slack within the element its force points anywhere: at most straight on
-            let size = norm(&chord);
+            let size = norm(chord);
             let direction = if dot(&chord, &direction) > 0.0 { direction } else { chord.map(|x| x / size) };
             (0..3).for_each(|c| off[c] += l * (chord[c] - stretch * direction[c]));
             finest = finest.min(l * TURN / turn);
@@ -82,7 +75,7 @@ impl CablePart {
                 worst = (turn, k);
             }
         }
-        let off = norm(&off) / self.length();
+        let off = norm(off) / self.length();
         (off > OFF && worst.0 > TURN).then(|| {
             format!(
                 "`{}`: its elements are too long for how sharply it bends: near {:.1} m one turns by {:.0} degrees, and the \
@@ -107,7 +100,7 @@ impl CablePart {
             let of =
                 |c: usize| weights.iter().zip(&forces[around.clone()]).map(|(w, f)| w * f[c]).sum::<f64>();
             let force = [of(0), of(1), of(2)];
-            let size = norm(&force);
+            let size = norm(force);
             (least, largest) = (least.min(size), largest.max(size));
             if size > 0.0 {
                 (0..3).for_each(|c| mean[c] += force[c] / (size * POINTS as f64));
