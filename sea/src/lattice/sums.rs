@@ -212,7 +212,7 @@ fn left(all: &[Component], down: f64, depth: f64) -> [Row; 2] {
 fn phase<R: Real>(line: &Phases, instant: &Phases, c: usize) -> [R; 2] {
     let [s, co] = [R::read(&line[0][c..]), R::read(&line[1][c..])];
     let [si, ci] = [R::read(&instant[0][c..]), R::read(&instant[1][c..])];
-    [s * ci - co * si, co * ci + s * si]
+    [s.fma(ci, -(co * si)), co.fma(ci, s * si)]
 }
 
 /// The sums of the surface.
@@ -236,10 +236,10 @@ impl LaneTask for Tops<'_> {
             let (kc, ks) = (k * cos, k * sin);
             all[0] += cos;
             all[1] -= ks;
-            all[2] -= k * kc;
-            all[3] += omega * sin;
-            all[4] += omega * kc;
-            all[5] -= omega * (k * ks);
+            all[2] = (-k).fma(kc, all[2]);
+            all[3] = omega.fma(sin, all[3]);
+            all[4] = omega.fma(kc, all[4]);
+            all[5] = (-omega).fma(k * ks, all[5]);
         }
         for i in 0..6 {
             sums[i] = total(all[i]);
@@ -268,12 +268,12 @@ impl LaneTask for Corners<'_> {
             let (cu, su, cw, sw) = (u * cos, u * sin, w * cos, w * sin);
             all[0] += cu;
             all[1] -= sw;
-            all[2] += omega * su;
-            all[3] += omega * cw;
-            all[4] -= k * su;
-            all[5] -= k * cw;
-            all[6] += omega * (k * cu);
-            all[7] -= omega * (k * sw);
+            all[2] = omega.fma(su, all[2]);
+            all[3] = omega.fma(cw, all[3]);
+            all[4] = (-k).fma(su, all[4]);
+            all[5] = (-k).fma(cw, all[5]);
+            all[6] = omega.fma(k * cu, all[6]);
+            all[7] = (-omega).fma(k * sw, all[7]);
         }
         for (all, sums) in all.chunks_exact(4).zip(sums.as_chunks_mut::<8>().0) {
             let [f, g, df, dg] = [total(all[0]), total(all[1]), total(all[2]), total(all[3])];

@@ -38,6 +38,8 @@ impl Statics<'_> {
         found: &mut Found,
         far: bool,
     ) -> Result<(), StaticsError> {
+        // its drag holds everything
+        self.free.clear();
         let load = self.load(state).max(f64::MIN_POSITIVE);
         let masses = self.masses(state);
         let (length, nv) = (self.model.length(), self.model.velocities());

@@ -195,15 +195,14 @@ impl Statics<'_> {
         if k == 0 {
             return Ok(Vec::new());
         }
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let mut by_force = Vec::with_capacity(k);
-        for c in &self.free {
-            let mut z = c.clone();
-            self.solver.solve(s, &self.system.values, &mut z)?;
-            by_force.push(z);
+        let mut by_force = self.free.clone();
+        for z in &mut by_force {
+            self.solver.solve(s, &self.system.values, z)?;
         }
-        let m = DMatrix::from_fn(k, k, |i, j| dot(&self.free[i], &by_force[j]));
-        let off = DVector::from_fn(k, |i, _| dot(&self.free[i], y) - ask[i]);
+        let columns = |all: &[Vec<f64>]| DMatrix::from_fn(s.n, k, |i, j| all[j][i]);
+        let across = columns(&self.free).transpose();
+        let m = &across * columns(&by_force);
+        let off = across * DVector::from_column_slice(y) - DVector::from_column_slice(ask);
         let forces = m.lu().solve(&off).ok_or(SolveError::NotFinite)?;
         for (z, f) in by_force.iter().zip(forces.iter()) {
             y.iter_mut().zip(z).for_each(|(y, z)| *y -= f * z);

@@ -17,11 +17,14 @@ use super::problem::Statics;
 use crate::model::state::{Relaxation, Relaxed, State};
 use crate::solve::linear::SolveError;
 use crate::solve::modes::{Mode, slowest};
+use std::collections::BTreeMap;
 
 /// Part of the diagonal of the tangent that is taken for rounding of it, and stands in for stiffness that is missing.
 pub(super) const MARGIN: f64 = 1e-12;
 /// The load of what lies in balance by itself, in parts of the largest stiffness times the length.
 const BALANCED: f64 = 1e-6;
+/// Of so many directions of a line without bending stiffness is asked whether it comes back, if that can be told.
+const ENOUGH: usize = 6;
 /// A motion that swings less often than this in the time in which it grows e-fold goes one way [rad].
 const ONE_WAY: f64 = 0.05;
 /// How many eigenvalues are asked for where loads have no potential.
@@ -101,19 +104,26 @@ impl Statics<'_> {
             }
         }
         // by the matrix alone these can't be told: rounding is as large as they are
+        let mut asked: BTreeMap<String, usize> = BTreeMap::default();
         for k in 0..near {
-            let shape = self.increment(&lowest[k]);
-            match self.lean(there, &shape, k, load) {
-                Leaning::Stays => {
-                    out.neutral.push(Neutral::new(self.model, there, shape));
-                }
+            let free = Neutral::new(self.model, there, self.increment(&lowest[k]));
+            // a limp line may lie otherwise in as many ways as it has nodes
+            let asked = free.line.as_ref().map(|line| asked.entry(line.clone()).or_default());
+            if asked.as_ref().is_some_and(|asked| **asked >= ENOUGH) {
+                continue;
+            }
+            let leaning = self.lean(there, &free.shape, k, load);
+            if let Some(asked) = asked {
+                *asked += if matches!(leaning, Leaning::Unknown) { ENOUGH } else { 1 };
+            }
+            match leaning {
+                Leaning::Stays => out.neutral.push(free),
                 Leaning::Returns => {}
                 Leaning::Leaves => {
                     out.unstable += 1;
-                    out.way_out.get_or_insert(shape);
+                    out.way_out.get_or_insert(free.shape);
                 }
                 Leaning::Unknown => {
-                    let free = Neutral::new(self.model, there, shape);
                     let shaped = |line| format!("nothing seems to hold the shape of `{line}`");
                     let what = free.line.map_or(format!("{}, as far as can be seen", free.what), shaped);
                     out.doubt = Some(format!("whether it is stable can't be told: {what}"));
