@@ -16,6 +16,7 @@ mod contradictions;
 mod controllers;
 mod corners;
 mod curved;
+mod dead_points;
 mod energy;
 mod inputs;
 mod invariance;

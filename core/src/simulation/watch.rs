@@ -3,6 +3,7 @@
 use super::{Observer, Simulation};
 use crate::simulation::audit::Created;
 use crate::solve::integrator::{Limit, Scheme, StepError, StepReport, Stepping};
+use crate::solve::redundancy::stuck;
 
 /// What may be left of constraints after a step, in parts of the model's length: ten times what Newton's method leaves.
 const LEFT: f64 = 1e-9;
@@ -115,13 +116,32 @@ impl Simulation {
         self.model.overran(&self.previous.at(), &self.state.at(), &far)
     }
 
-    /// Names the constraints that may be to blame for a step that failed, since they contradict each other there.
+    /// Names the constraints that may be to blame for a step that failed, since they contradict each other there, or leave no way on.
     pub(super) fn suspect(&self, error: StepError) -> StepError {
-        let Some(redundancy) = self.model.redundancy() else { return error };
-        let names: Vec<&str> = redundancy.constraints.iter().map(String::as_str).collect();
+        let redundancy = self.model.redundancy();
+        let stuck = redundancy.map_or_else(|| stuck(&self.model, &self.state.at()), |_| Vec::new());
+        let names: Vec<&str> =
+            redundancy.map_or(stuck, |r| r.constraints.iter().map(String::as_str).collect());
+        if names.is_empty() {
+            return error;
+        }
         let drives =
             self.driver_of(&names).map_or(String::new(), |driver| format!("; `{driver}` drives them"));
-        let who = format!("do the redundant constraints contradict each other here? {redundancy}{drives}");
+        let who = match redundancy {
+            Some(all) if all.dead_point => {
+                format!(
+                    "do {} start at a dead point, from which rounding chooses the way?{drives}",
+                    all.names()
+                )
+            }
+            Some(all) => format!("do the redundant constraints contradict each other here? {all}{drives}"),
+            None => {
+                let names = names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+                format!(
+                    "are the constraints {names} at a dead point, or at the end of the way that they leave?{drives}"
+                )
+            }
+        };
         match error {
             StepError::NoConvergence { t, h, why, equation } => {
                 StepError::NoConvergence { t, h, why: format!("{why} ({who})"), equation }

@@ -5,6 +5,7 @@
 //! as the right-hand side is consistent, repeated solution converges to that of the true system, with the multipliers
 //! of least norm (in the metric `E`): the iteration of Newton's method does that by itself.
 
+use crate::algebra::noise::Noise;
 use crate::algebra::scalar::Scalar;
 use crate::error::BuildError;
 use crate::model::Model;
@@ -22,9 +23,14 @@ const SOFT: f64 = 1e-12;
 const BLUNT: f64 = 1e-6;
 /// The same where only the rank is asked for.
 const RANK: f64 = 1e-12;
+/// The same where a mechanism seems to be stuck: what the constraints hold by less than a thousandth counts as lost.
+const STUCK: f64 = 1e-6;
 /// Entries of a vector that the constraints can't resist, relative to those of the vector that it is projected from;
 /// below, it is taken for rounding.
 const NOTHING: f64 = 1e-3;
+
+/// Energy of a motion that constraints leave, in parts of that of the one that it is projected from; below, none is left.
+const FREE: f64 = 1e-12;
 
 /// How far a motion has gone, in parts of the model, when it is said to have just begun.
 const BEGUN: [f64; 2] = [1e-6, 1e-4];
@@ -104,7 +110,7 @@ pub fn find_redundancy(model: &Model) -> Result<Option<Redundancy>, BuildError> 
     }
     let (state, still) = (model.state(), vec![0.0; model.velocities()]);
     let at = At { v: &still, ..state.at() };
-    let mut unresisted = Unresisted::new(model, &at)?;
+    let mut unresisted = Unresisted::new(model, &at, RANK)?;
     let (equations, rows) = unresisted.rank()?;
     if equations == 0 {
         return Ok(None);
@@ -113,7 +119,15 @@ pub fn find_redundancy(model: &Model) -> Result<Option<Redundancy>, BuildError> 
     unresisted.check_motions(at)?;
     let constraints =
         model.constraints_where(|r| rows.contains(&r)).into_iter().map(str::to_string).collect();
-    Ok(Some(Redundancy { equations, constraints }))
+    let dead_point = unresisted.is_dead_point(&at)?;
+    Ok(Some(Redundancy { equations, constraints, dead_point }))
+}
+
+/// Names of the constraints that nearly follow from each other where a model has got to, as at a dead point, or at the end of the
+/// way that they leave; empty if there are none.
+pub fn stuck<'a>(model: &'a Model, at: &At<'_>) -> Vec<&'a str> {
+    let rank = Unresisted::new(model, at, STUCK).and_then(|mut unresisted| unresisted.rank());
+    rank.map_or(Vec::new(), |(_, rows)| model.constraints_where(|r| rows.contains(&r)))
 }
 
 /// Projects vectors of the size of the multipliers onto what no motion of the model changes.
@@ -129,21 +143,17 @@ struct Unresisted<'a> {
 }
 
 impl<'a> Unresisted<'a> {
-    fn new(model: &'a Model, at: &At<'_>) -> Result<Self, BuildError> {
+    fn new(model: &'a Model, at: &At<'_>, soft: f64) -> Result<Self, BuildError> {
         let s = model.structure();
         let (mut values, mut g) = (vec![0.0; s.entries()], vec![0.0; model.multipliers()]);
-        // translations weigh one, turns the square of the model's size
-        let square = model.length().powi(2);
-        for node in model.nodes() {
-            for (k, d) in node.dofs().enumerate() {
-                values[s.diagonal[d] as usize] = if k < 3 { 1.0 } else { square };
-            }
+        for (d, weight) in weights(model).enumerate() {
+            values[s.diagonal[d] as usize] = weight;
         }
         for c in 0..model.constraints().len() {
             differentiate(model, c, at, &mut g, &mut values)?;
         }
         let softening = Softening::new(model, s);
-        softening.apply_scaled(&mut values, RANK);
+        softening.apply_scaled(&mut values, soft);
         let mut solver = Guard::new(s).map_err(not_finite)?;
         solver.factor(s, &values).map_err(not_finite)?;
         Ok(Unresisted { model, values, solver, softening, x: vec![0.0; s.n], g })
@@ -195,6 +205,33 @@ impl<'a> Unresisted<'a> {
         Ok((basis.len(), rows))
     }
 
+    /// Whether some constraint follows from others only here, as at a dead point: what they let go to first order they resist to
+    /// second order, so that along a motion `v` with `G v = 0` no acceleration meets `G a = -(∂(G v)/∂q) v`.
+    fn is_dead_point(&mut self, at: &At<'_>) -> Result<bool, BuildError> {
+        let (model, s) = (self.model, self.model.structure());
+        let (m, nv) = (model.multipliers(), model.velocities());
+        let mut noise = Noise::default();
+        let mut v: Vec<f64> = weights(model).map(|w| w.sqrt() * noise.draw()).collect();
+        let size = |v: &[f64], power: i32| {
+            v.iter().zip(weights(model)).map(|(v, w)| v * v * w.powi(power)).sum::<f64>()
+        };
+        let before = size(&v, -1);
+        v.resize(s.n, 0.0);
+        s.order(&v, &mut self.x);
+        self.solver.solve(s, &self.values, &mut self.x).map_err(not_finite)?;
+        s.restore(&self.x, &mut v);
+        v.truncate(nv);
+        if !(size(&v, 1) > FREE * before) {
+            return Ok(false);
+        }
+        let (mut rate, mut still, mut moving) = (vec![0.0; m], vec![0.0; m], vec![0.0; m]);
+        model.rates(at, &mut rate, &mut still);
+        model.rates(&At { v: &v, ..*at }, &mut rate, &mut moving);
+        let bend: Vec<f64> = moving.iter().zip(&still).map(|(moving, still)| moving - still).collect();
+        let conflict = self.of(&bend)?;
+        Ok(conflict.iter().any(|x| x.abs() > NOTHING * largest(&bend)))
+    }
+
     /// Checks that redundant constraints ask for the same at the start.
     fn check_start(&mut self, at: &At<'_>) -> Result<(), BuildError> {
         let (model, m) = (self.model, self.model.multipliers());
@@ -235,6 +272,15 @@ impl<'a> Unresisted<'a> {
         }
         Ok(())
     }
+}
+
+/// What each velocity weighs: translations one, turns the square of the model's size.
+fn weights(model: &Model) -> impl Iterator<Item = f64> {
+    let square = model.length().powi(2);
+    model
+        .nodes()
+        .iter()
+        .flat_map(move |n| n.dofs().enumerate().map(move |(k, _)| if k < 3 { 1.0 } else { square }))
 }
 
 /// Adds the Jacobian of one constraint to the matrix, and its values to `g`.

@@ -97,6 +97,13 @@ impl Started {
                     "redundant constraints: {r}. The motion is that without them; forces that could be shared out in \
                      many ways are given with the least norm"
                 ));
+                if r.dead_point {
+                    all.push(format!(
+                        "{} start at a dead point: from there more ways than one lead on, or none, and rounding chooses. \
+                         Begin a little beyond it",
+                        r.names()
+                    ));
+                }
             }
             if let Stepping::Fixed { h } = scene.solver.stepping {
                 all.extend(s.faster_than(h, scene.run.duration).into_iter().map(|(name, t)| {
