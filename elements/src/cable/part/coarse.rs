@@ -78,13 +78,14 @@ impl CablePart {
         let off = norm(off) / self.length();
         (off > OFF && worst.0 > TURN).then(|| {
             format!(
-                "`{}`: its elements are too long for how sharply it bends: near {:.1} m one turns by {:.0} degrees, and the \
+                "`{}`: its elements are too long for how sharply it bends: near {:.4} m one turns by {:.0} degrees, and the \
                  line fits its own forces only to {:.1} % of its length. Tensions, and small forces still more, may be off by \
-                 several times as much. Take elements of at most {finest:.2e} m there",
+                 several times as much. Take elements of at most {} m there",
                 self.name,
                 mesh[worst.1] - mesh[0],
                 worst.0.to_degrees(),
-                100.0 * off
+                100.0 * off,
+                rounded(finest)
             )
         })
     }
@@ -108,4 +109,9 @@ impl CablePart {
         }
         (mean, [least, largest])
     }
+}
+
+/// A number of two digits, not in powers of ten.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.1e}").parse().unwrap_or(x)
 }
