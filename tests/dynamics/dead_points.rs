@@ -63,7 +63,8 @@ fn what_is_driven_to_the_end_of_its_way_says_so() {
     for options in [controlled(1e-4), radau(1e-4)] {
         let mut s = start(&scene, &options, 3.0);
         let e = s.advance(3.0, f64::INFINITY, &mut ()).expect_err("it goes on").to_string();
-        let names = "`left`, `right`, `coupler`, `drive` at a dead point, or at the end of the way that they leave";
+        let names =
+            "`left`, `right`, `coupler`, `drive` at a dead point, or at the end of the way that they leave";
         assert!(e.contains(names), "{e}");
         assert!((s.state.t - 1.4348).abs() < 1e-3, "{}", s.state.t);
     }

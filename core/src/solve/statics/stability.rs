@@ -104,29 +104,31 @@ impl Statics<'_> {
             }
         }
         // by the matrix alone these can't be told: rounding is as large as they are
-        let mut asked: BTreeMap<String, usize> = BTreeMap::default();
+        let mut limp: BTreeMap<String, usize> = BTreeMap::new();
         for k in 0..near {
             let free = Neutral::new(self.model, there, self.increment(&lowest[k]));
+            let asked = free.line.as_ref().and_then(|line| limp.get(line)).copied().unwrap_or(0);
             // a limp line may lie otherwise in as many ways as it has nodes
-            let asked = free.line.as_ref().map(|line| asked.entry(line.clone()).or_default());
-            if asked.as_ref().is_some_and(|asked| **asked >= ENOUGH) {
+            if asked >= ENOUGH {
                 continue;
             }
             let leaning = self.lean(there, &free.shape, k, load);
-            if let Some(asked) = asked {
-                *asked += if matches!(leaning, Leaning::Unknown) { ENOUGH } else { 1 };
+            if let Some(line) = &free.line {
+                let told = !matches!(leaning, Leaning::Unknown);
+                limp.insert(line.clone(), if told { asked + 1 } else { ENOUGH });
             }
             match leaning {
                 Leaning::Stays => out.neutral.push(free),
+                // of a limp line no more can be told
+                Leaning::Unknown if free.line.is_some() => out.neutral.push(free),
+                Leaning::Unknown => {
+                    let what = format!("{}, as far as can be seen", free.what);
+                    out.doubt = Some(format!("whether it is stable can't be told: {what}"));
+                }
                 Leaning::Returns => {}
                 Leaning::Leaves => {
                     out.unstable += 1;
                     out.way_out.get_or_insert(free.shape);
-                }
-                Leaning::Unknown => {
-                    let shaped = |line| format!("nothing seems to hold the shape of `{line}`");
-                    let what = free.line.map_or(format!("{}, as far as can be seen", free.what), shaped);
-                    out.doubt = Some(format!("whether it is stable can't be told: {what}"));
                 }
             }
         }
