@@ -435,6 +435,54 @@ fn what_friction_had_to_do_with_an_equilibrium_that_is_not_found_is_told() {
     assert!((fairlead / hangs - 1.0).abs() < 0.03, "{fairlead} N instead of {hangs}");
 }
 
+/// A line that hardly stretches, pulled over ground that rises and falls: what friction has taken hold of has no linear motion that could
+/// tell whether it is stable, and that is said. The line is found all the same: a hundred times softer it pulls by a thousandth less.
+#[test]
+fn a_stiff_line_pulled_over_uneven_ground_is_found_and_its_stability_said_to_be_unknown() {
+    let pulled = |ea: f64, elements: usize| {
+        run(&format!(
+            r#"
+            run = {{ analysis = "statics" }}
+            [[elements]]
+            type = "cable"
+            name = "line"
+            points = [[0, 0, 0], [150, 0, 50]]
+            length = 166.02
+            elements = {elements}
+            section = {{ mass = 10.19368, ea = {ea:e}, diameter = 0.1, displaced = 0 }}
+            [[constraints]]
+            type = "spherical"
+            name = "anchor"
+            marker = "line.start"
+            [[constraints]]
+            type = "spherical"
+            name = "fairlead"
+            marker = "line.end"
+            [[forces]]
+            type = "gravity"
+            [[forces]]
+            type = "bed"
+            stiffness = 1e6
+            friction = {{ mu = 0.3, equilibrium = "pulled" }}
+            [forces.grid]
+            x = [-50, 0, 50, 100, 150, 200]
+            y = [-50, 50]
+            z = [[-2, -2], [-0.05, -0.05], [5, 5], [14, 14], [20, 20], [30, 30]]
+            [[records]]
+            type = "reaction"
+            of = "fairlead"
+            what = "magnitude"
+            "#
+        ))
+    };
+    let (soft, stiff) = (pulled(5e7, 30), pulled(5e9, 60));
+    let [soft_force, stiff_force] = [&soft, &stiff].map(|h| last(h, "fairlead.magnitude"));
+    assert!((stiff_force / soft_force - 1.0).abs() < 2e-3, "{soft_force} N and {stiff_force} N");
+    assert!(soft.warnings.is_empty(), "{:?}", soft.warnings);
+    let doubt = "whether it is stable can't be told by linear motions, now that friction has taken hold";
+    assert!(stiff.warnings.iter().any(|w| w.contains(doubt)), "{:?}", stiff.warnings);
+}
+
 /// What begins above a slope comes to lie below where it began, whichever way is down: ground that bears pushes straight up, to
 /// rounding of a force that is a million times its weight where a fall that nothing stops at first has gone deep.
 #[test]

@@ -3,7 +3,7 @@
 //! Newton's method with the remedies of [`Relaxed`](crate::Relaxed): geometric stiffness from the stress linearised at
 //! the iterate before; a floor of tension where the tangent isn't positive; a cap of the stiff modulus at the first
 //! iterations. An equilibrium is accepted if it is stable and not folded. Where Newton's method finds none, the model
-//! creeps downhill to one; along a path of loads it follows the arc through bends and leaves critical points for the
+//! creeps downhill to one, from the guess or from slack lines laid in arcs; along a path of loads it follows the arc through bends and leaves critical points for the
 //! stable path behind them.
 
 mod creep;

@@ -13,7 +13,7 @@ pub struct Found {
     pub floored: u32,
     /// How often an unstable equilibrium was left by a push along its softest direction.
     pub pushes: u32,
-    /// Whether the search was begun again from straight cables, because the first guess led to a fold.
+    /// Whether the search was begun again from straight cables, or from arcs of slack ones, because the first guess led nowhere.
     pub straightened: bool,
     /// Rate at which small disturbances grow [1/s], swinging to and fro or fed by forces of velocities; 0 if they don't. Only
     /// asked where the first tangent of a path is not symmetric, as in flowing water.
