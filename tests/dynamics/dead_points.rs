@@ -1,7 +1,8 @@
 //! Linkages at the end of the way that their constraints leave, and at dead points, are told of as what they are.
 
 use crate::mechanisms::{Angle, controlled, drive, hinge, radau, rod, start};
-use ropewalk::constraints::DistanceSpec;
+use ropewalk::constraints::{DistanceSpec, PrismaticSpec};
+use ropewalk::elements::RigidBodySpec;
 use ropewalk::scene::Scene;
 use std::f64::consts::FRAC_PI_2;
 
@@ -25,20 +26,39 @@ fn cranks(count: usize, angle: f64) -> Scene {
     scene
 }
 
+fn starts_dead(scene: &Scene) -> bool {
+    let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
+    model.redundancy().expect("it is held more often than need be").dead_point
+}
+
+/// A table on two rails goes straight: what its motion bends by is rounding, and no dead point.
+#[test]
+fn what_slides_on_two_rails_is_at_no_dead_point() {
+    for (size, axis) in [(1.0, [0.6, 0.7, 0.39]), (1e3, [0.6, 0.7, 0.39]), (1e-3, [1.0, 0.0, 0.0])] {
+        let at = |p: [f64; 3]| p.map(|x| size * x);
+        let table =
+            RigidBodySpec::new("table", at([0.3, 0.2, 0.1]), 1.0, [0.1, 0.2, 0.3].map(|j| size * size * j))
+                .with_point("a", at([0.1, 0.3, 0.0]))
+                .with_point("b", at([0.13, -0.37, 0.05]));
+        let mut scene = Scene::new();
+        scene.element(table);
+        for (name, marker) in [("left", "table.a"), ("right", "table.b")] {
+            scene.constraint(PrismaticSpec { name: name.into(), marker: marker.into(), to: None, axis });
+        }
+        assert!(!starts_dead(&scene), "{size} m along {axis:?}");
+    }
+}
+
 /// Where all cranks point along the bar they may go on alike or against each other; elsewhere a bar with many cranks is but held
 /// more often than need be, driven or not.
 #[test]
 fn a_dead_point_at_the_start_is_told_from_constraints_that_repeat_others() {
-    let dead = |scene: &Scene| {
-        let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
-        model.redundancy().expect("a plane loop in space is redundant").dead_point
-    };
     for count in [2, 3] {
         for (angle, is) in [(0.0, true), (0.3, false), (FRAC_PI_2, false)] {
-            assert_eq!(dead(&cranks(count, angle)), is, "{count} cranks at {angle}");
+            assert_eq!(starts_dead(&cranks(count, angle)), is, "{count} cranks at {angle}");
             let mut idle = cranks(count, angle);
             idle.constraints.retain(|c| c.name() != "drive");
-            assert_eq!(dead(&idle), is, "{count} cranks at {angle}, not driven");
+            assert_eq!(starts_dead(&idle), is, "{count} cranks at {angle}, not driven");
         }
     }
 }

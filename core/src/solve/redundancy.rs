@@ -31,6 +31,8 @@ const NOTHING: f64 = 1e-3;
 
 /// Energy of a motion that constraints leave, in parts of that of the one that it is projected from; below, none is left.
 const FREE: f64 = 1e-12;
+/// What a motion bends by in the time in which it goes as far as the model is long, in parts of that; below, it is straight.
+const STRAIGHT: f64 = 1e-9;
 
 /// How far a motion has gone, in parts of the model, when it is said to have just begun.
 const BEGUN: [f64; 2] = [1e-6, 1e-4];
@@ -229,7 +231,10 @@ impl<'a> Unresisted<'a> {
         model.rates(&At { v: &v, ..*at }, &mut rate, &mut moving);
         let bend: Vec<f64> = moving.iter().zip(&still).map(|(moving, still)| moving - still).collect();
         let conflict = self.of(&bend)?;
-        Ok(conflict.iter().any(|x| x.abs() > NOTHING * largest(&bend)))
+        // straight motions bend by rounding alone
+        let bent = STRAIGHT * size(&v, 1) / model.length();
+        let resists = |(x, scale): (&f64, f64)| x.abs() > (NOTHING * largest(&bend)).max(bent * scale);
+        Ok(conflict.iter().zip(model.row_scale()).any(resists))
     }
 
     /// Checks that redundant constraints ask for the same at the start.
