@@ -31,7 +31,14 @@ impl Observer for Keeper {
         true
     }
     fn sample(&mut self, s: &Sample<'_>) -> ControlFlow<()> {
-        let all = [&[s.at.t, s.audit.dissipated][..], s.at.q, s.at.v, s.at.a, s.lambda, s.at.internal];
+        let all = [
+            &[s.at.t, s.audit.dissipated, s.audit.supplied][..],
+            s.at.q,
+            s.at.v,
+            s.at.a,
+            s.lambda,
+            s.at.internal,
+        ];
         self.samples.extend(all.iter().flat_map(|x| x.iter()).map(|x| x.to_bits()));
         ControlFlow::Continue(())
     }
@@ -104,6 +111,13 @@ fn vehicle_whose_pin_shears_goes_on_to_the_last_bit() {
     let scene = bundled("shear-pin", 0.3);
     let options = scene.solver.clone();
     println!("{} steps", same_from_checkpoint(&scene, &options, 20, 2));
+}
+
+/// What a motion leads brings in energy by velocities that are on the constraints: the balance goes on with that.
+#[test]
+fn linkage_that_a_motion_drives_goes_on_to_the_last_bit() {
+    let scene = bundled("four-bar", 0.5);
+    same_from_checkpoint(&scene, &scene.solver, 10, 2);
 }
 
 #[test]

@@ -40,7 +40,7 @@ impl AddAssign for Energy {
 /// Rates of the energy balance `d/dt (kinetic + potential) = supplied + carried - dissipated` [W]; over lanes with `R`
 /// other than `f64`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Power<R = f64> {
     /// Turned into heat or left in the water.
     pub dissipated: R,

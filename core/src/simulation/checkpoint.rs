@@ -9,6 +9,7 @@ use crate::model::Model;
 use crate::model::input::Course;
 use crate::model::remesh::Plan;
 use crate::model::state::State;
+use crate::model::term::Power;
 use crate::simulation::audit::Audit;
 use crate::solve::integrator::{Correction, Counts, Options, StepError, Workspace};
 use crate::solve::linear::SolveError;
@@ -46,6 +47,8 @@ pub struct Checkpoint {
     #[cfg_attr(feature = "serde", serde(default))]
     uneven: Uneven,
     keep_audit: bool,
+    /// The powers that the balance goes on with.
+    power: Power,
     /// Whether constraints had to be solved as if some were redundant.
     softened: bool,
     sampled: (f64, u64),
@@ -108,6 +111,7 @@ impl Simulation {
             rounded: self.rounded,
             uneven: self.uneven.clone(),
             keep_audit: self.keep_audit,
+            power: self.power,
             softened: self.work.softening.is_some(),
             sampled: self.sampled,
             memory: self.memory.clone(),
@@ -148,7 +152,6 @@ impl Simulation {
             work.soften(&model);
         }
         work.counts = c.counts;
-        let power = model.power(&c.state.at(), &c.state.lambda);
         let events = model.events().iter().cloned().zip(c.events).collect();
         let (previous, scratch) = (c.state.clone(), c.state.clone());
         Ok(Simulation {
@@ -165,13 +168,14 @@ impl Simulation {
             rounded: c.rounded,
             uneven: c.uneven.clone(),
             keep_audit: c.keep_audit,
-            power,
-            accounted: (c.audit, power),
+            power: c.power,
+            accounted: (c.audit, c.power),
             shown: c.audit,
             events,
             previous,
             scratch,
             aside: None,
+            aside_of: 0,
             sampled: c.sampled,
             memory: c.memory,
             jumped: c.jumped,
