@@ -1,7 +1,6 @@
 //! Assembly: residual, iteration matrix and constraint equations of a model, from its terms and constraints.
 
 use crate::model::Model;
-use crate::model::constraint::MOST_ROWS;
 use crate::model::node::{NodeKind, retract};
 use crate::model::state::{At, State};
 use crate::model::structure::Structure;
@@ -19,7 +18,7 @@ pub struct System {
     pub residual: Vec<f64>,
     /// Values of the matrix, where [`Structure::rows`] says.
     pub values: Vec<f64>,
-    jacobian: Vec<f64>,
+    pub(super) jacobian: Vec<f64>,
     hessian: Vec<f64>,
     /// For what elements scatter.
     scratch: Vec<f64>,
@@ -247,7 +246,7 @@ impl Model {
     ) {
         let (constraint, rows) = (&self.constraints[c], self.rows_of(c));
         let m = rows.len();
-        let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
+        let n = self.freedoms_of(c);
         let multipliers = &lambda[rows.clone()];
         if !self.holds(c, at.internal) {
             // what is left are equations for its multipliers, which are zero since it let go
@@ -325,49 +324,8 @@ impl Model {
                 g[self.rows_of(c)].fill(0.0);
                 continue;
             }
-            let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
-            sys.jacobian.resize(n * constraint.rows().len(), 0.0);
+            sys.jacobian.resize(self.freedoms_of(c) * constraint.rows().len(), 0.0);
             constraint.violation(&self.nodes, at, &mut g[self.rows_of(c)], &mut sys.jacobian);
-        }
-    }
-
-    /// Rates of the constraints, `G v + ∂g/∂t`.
-    pub fn constraint_rates(&self, at: &At<'_>, sys: &mut System, rate: &mut [f64]) {
-        for c in 0..self.constraints.len() {
-            self.constraint_rate(c, at, sys, &mut rate[self.rows_of(c)]);
-        }
-    }
-
-    /// The same of one constraint.
-    pub(crate) fn constraint_rate(&self, c: usize, at: &At<'_>, sys: &mut System, rate: &mut [f64]) {
-        if !self.holds(c, at.internal) {
-            rate.fill(0.0);
-            return;
-        }
-        let (constraint, m) = (&self.constraints[c], rate.len());
-        let (mut g, mut bias) = ([0.0; MOST_ROWS], [0.0; MOST_ROWS]);
-        let n: usize = constraint.nodes().iter().map(|&k| self.node(k).kind.velocities()).sum();
-        sys.jacobian.resize(n * m, 0.0);
-        constraint.jacobian(&self.nodes, at, &mut g[..m], &mut sys.jacobian);
-        constraint.rates(&self.nodes, at, rate, &mut bias[..m]);
-        let dofs = constraint.nodes().iter().flat_map(|&k| self.node(k).dofs());
-        for (j, dof) in dofs.enumerate() {
-            for (r, rate) in rate.iter_mut().enumerate() {
-                *rate += sys.jacobian[r * n + j] * at.v[dof];
-            }
-        }
-    }
-
-    /// `∂g/∂t` and the bias of the acceleration equations, for all rows.
-    pub fn rates(&self, at: &At<'_>, rate: &mut [f64], bias: &mut [f64]) {
-        for (c, constraint) in self.constraints.iter().enumerate() {
-            let rows = self.rows_of(c);
-            if self.holds(c, at.internal) {
-                constraint.rates(&self.nodes, at, &mut rate[rows.clone()], &mut bias[rows]);
-            } else {
-                rate[rows.clone()].fill(0.0);
-                bias[rows].fill(0.0);
-            }
         }
     }
 }

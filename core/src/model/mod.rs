@@ -24,6 +24,7 @@ pub(crate) mod order;
 pub mod part;
 pub mod pattern;
 pub mod pool;
+pub(crate) mod rates;
 pub mod reach;
 pub mod redundancy;
 pub mod relation;

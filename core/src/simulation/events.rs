@@ -10,8 +10,10 @@ use crate::model::term::Energy;
 use crate::solve::integrator::{Limit, StepError, restart};
 use std::sync::Arc;
 
-/// The value at half of an allowed load.
-const HALF: f64 = -0.5;
+/// From which value on a load is searched for: strains are off by what velocities are, forces by what multipliers swing.
+const NEAR: [f64; 2] = [-0.1, -0.5];
+/// By how much an allowed load may be exceeded when it is found to be reached.
+const OVER: f64 = 1e-6;
 
 /// An event that has changed something.
 pub(super) struct Fired {
@@ -34,10 +36,10 @@ pub(super) fn at_start(event: &dyn Event, model: &Model, state: &State) -> f64 {
 }
 
 impl Simulation {
-    /// The first event inside the last step after a time, and when it comes; what all of them are at its end goes into
-    /// `ends`.
-    fn next_event(&mut self, from: f64, ends: &mut Vec<f64>) -> Option<(usize, f64)> {
-        let mut first: Option<(usize, f64)> = None;
+    /// The first event inside the last step after a time, and the state in which it comes; what all of them are at the end
+    /// of the step goes into `ends`.
+    fn next_event(&mut self, from: f64, ends: &mut Vec<f64>) -> Option<(usize, State)> {
+        let mut first: Option<(usize, State)> = None;
         ends.clear();
         for k in 0..self.events.len() {
             let (event, before) = (self.events[k].0.clone(), self.events[k].1);
@@ -51,9 +53,9 @@ impl Simulation {
             if !crossed {
                 continue;
             }
-            let t = self.crossing(event.as_ref(), [from, self.state.t], [before, after]);
-            if first.is_none_or(|(_, first)| t < first) {
-                first = Some((k, t));
+            let there = self.crossing(event.as_ref(), [from, self.state.t], [before, after]);
+            if first.as_ref().is_none_or(|(_, first)| there.t < first.t) {
+                first = Some((k, there));
             }
         }
         first
@@ -63,28 +65,36 @@ impl Simulation {
     fn value_at_end(&mut self, event: &dyn Event) -> f64 {
         let value = event.value(&self.model, &self.state);
         let depends = event.depends();
-        if depends == Depends::OnMotion || value < HALF {
+        let near = match depends {
+            Depends::OnMotion => return value,
+            Depends::OnStrains => NEAR[0],
+            Depends::OnForces => NEAR[1],
+        };
+        if value < near {
             return value;
         }
         self.look_inside(self.state.t, depends);
         event.value(&self.model, &self.scratch)
     }
 
-    /// When an event's function changes its sign between two times with these values: by halves, or, where every look costs
-    /// a search, by false position with the Illinois rule.
+    /// The state in which an event's function has just changed its sign, between two times with these values: found by
+    /// halves, or, where every look costs a search, by false position with the Illinois rule.
     fn crossing(
         &mut self,
         event: &dyn Event,
         [mut low, mut high]: [f64; 2],
         [before, after]: [f64; 2],
-    ) -> f64 {
+    ) -> State {
         let depends = event.depends();
         let searches = depends != Depends::OnMotion;
-        let fine = if searches { 1e-9 } else { 1e-12 };
+        let (fine, over) = if searches { (1e-9, OVER) } else { (1e-12, 0.0) };
         let tolerance = 4.0 * f64::EPSILON * high.abs() + fine * (high - low);
         let (mut below, mut above, mut last) = (before, after, None);
+        let mut found: Option<State> = None;
         while high - low > tolerance {
-            let share = if searches { (below / (below - above)).clamp(1e-3, 0.999) } else { 0.5 };
+            // a load is aimed at that is just enough
+            let share = (below - 0.5 * over.copysign(after)) / (below - above);
+            let share = if searches { share.clamp(1e-3, 0.999) } else { 0.5 };
             let mid = low + share * (high - low);
             if mid <= low || mid >= high {
                 break;
@@ -96,13 +106,20 @@ impl Simulation {
                 (low, below) = (mid, value);
             } else {
                 (high, above) = (mid, value);
+                found = searches.then(|| self.scratch.clone());
+                if value.abs() <= over {
+                    break;
+                }
             }
             if last == Some(early) {
                 *(if early { &mut above } else { &mut below }) *= 0.5;
             }
             last = Some(early);
         }
-        high
+        found.unwrap_or_else(|| {
+            self.look_inside(high, depends);
+            self.scratch.clone()
+        })
     }
 
     /// Sets the scratch state to a time inside the last step or at its end, with what is asked for of the motion there.
@@ -123,8 +140,9 @@ impl Simulation {
     /// moves to just before it.
     pub(super) fn locate(&mut self, observer: &mut dyn Observer) -> Option<Fired> {
         let (mut from, mut ends) = (self.previous.t, Vec::new());
-        while let Some((event, t)) = self.next_event(from, &mut ends) {
-            self.look_inside(t, self.events[event].0.depends());
+        while let Some((event, there)) = self.next_event(from, &mut ends) {
+            let t = there.t;
+            self.scratch = there;
             self.scratch.control.clone_from(&self.state.control);
             self.model.remember(&mut self.scratch);
             for (k, (other, value)) in self.events.iter_mut().enumerate() {

@@ -9,7 +9,7 @@ use crate::model::node::retract;
 use crate::model::state::State;
 use crate::model::term::Weights;
 use crate::solve::integrator::{
-    Workspace, accelerate, agree, agree_in_velocity, consistent_by_iteration, consistent_by_mass,
+    MOST_MOVES, Workspace, accelerate, agree, agree_in_velocity, consistent_by_iteration, consistent_by_mass,
     move_velocities,
 };
 use crate::solve::linear::SolveError;
@@ -21,6 +21,8 @@ const BALANCED: f64 = 0.1;
 const FINE: f64 = 1e-2;
 /// What an iteration leaves of what there was, for its matrix to serve once more.
 const FAST: f64 = 0.03;
+/// What may be left, in parts of the forces at work, for the matrix of another state to lead on from there.
+const NEAR: f64 = 0.03;
 /// Iterations that should do for that.
 const MOST_ITERATIONS: usize = 10;
 
@@ -95,27 +97,34 @@ impl Simulation {
         let (model, work, s) = (&*self.model, &mut self.work, &mut self.scratch);
         let (nv, start) = (model.velocities(), s.q.clone());
         let mut d = vec![0.0; nv];
-        // the matrix of the last step serves until it doesn't, then those of the states here
-        let (mut own, mut renew, mut before) = (false, false, f64::INFINITY);
+        // the matrix of the last step serves until it doesn't, then those of the states here, also at other times of the step
+        if self.aside_of != work.counts.steps || aside.factored != Some(weights) {
+            (self.aside_of, aside.factored) = (work.counts.steps, None);
+        }
+        let (mut own, mut renew, mut before) = (aside.factored.is_some(), false, f64::INFINITY);
         // from where a matrix serves once more, and how far that is; whether one may
         let (mut from, mut again): (Option<(State, Vec<f64>)>, _) = (None, true);
-        aside.factored = None;
+        let mut goal = None;
         for k in 0..MOST_ITERATIONS {
             let factors = if own && aside.factored.is_some() { &mut *aside } else { &mut *work };
-            if move_velocities(model, s, factors).is_err() {
-                break;
-            }
+            // on the way one move of velocities does
+            let most = if inside { 1 } else { MOST_MOVES };
+            let Ok(moved) = move_velocities(model, s, factors, most, goal) else { break };
             if !inside && !forces {
                 return true;
             }
+            goal = goal.or(Some(moved.goal));
             model.assemble(&s.at(), &s.lambda, renew.then_some(weights), &mut aside.system);
             let residual = &aside.system.residual;
             let mut left = |tolerance| work.forces.ratio(&work.norms, residual, &s.a, &s.lambda, tolerance);
-            if k == 0 && (!inside || left(BALANCED * tolerance) <= 1.0) {
-                return true;
-            }
-            let left = left(FINE * tolerance);
+            let good = k == 0 && (!inside || left(BALANCED * tolerance) <= 1.0);
+            let left = if good { 0.0 } else { left(FINE * tolerance) };
             if left <= 1.0 {
+                let factors = if own && aside.factored.is_some() { &mut *aside } else { &mut *work };
+                let Ok(moved) = move_velocities(model, s, factors, MOST_MOVES, goal) else { break };
+                if forces && moved.times > 0 {
+                    model.assemble(&s.at(), &s.lambda, None, &mut aside.system);
+                }
                 return true;
             }
             if !(left <= before)
@@ -126,7 +135,13 @@ impl Simulation {
                 (own, renew, before, again) = (true, true, f64::INFINITY, false);
                 continue;
             }
-            let fast = left < FAST * before;
+            let far = |left: f64| FINE * tolerance * left > NEAR;
+            let fast = if k == 0 {
+                !far(left)
+            } else {
+                // or two more of its iterations will do
+                !far(before) && (left < FAST * before || left.powi(3) < before.powi(2))
+            };
             if !renew && !fast {
                 (own, renew, from) = (true, true, None);
                 continue;

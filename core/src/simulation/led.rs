@@ -9,11 +9,9 @@ use super::dense::Dense;
 use crate::model::constraint::{MOST_ROWS, RowKind};
 use crate::model::node::retract;
 use crate::model::term::{Energy, Power};
-use crate::solve::integrator::{Which, agree, agree_in_velocity, move_velocities, way_back};
+use crate::solve::integrator::{MOST_MOVES, Which, agree, agree_in_velocity, move_velocities, way_back};
 use crate::solve::linear::SolveError;
 
-/// Most moves of positions onto the constraints.
-const MOST_MOVES: usize = 4;
 /// What velocities are off the constraints by that the balance of energy takes as it is, in parts of the fastest.
 const STRAYS: f64 = 1e-4;
 /// What energy the trapezoidal rule may leave to doubt in a step, in parts of what there is …
@@ -45,7 +43,7 @@ impl Simulation {
         // at the end of a step, forces by its factors bring velocities onto the constraints as well
         let inside = self.scratch.t < self.state.t;
         if !forces || inside || self.weights().is_none() {
-            self.lead()?;
+            self.lead(!forces)?;
         }
         if forces { self.find_forces() } else { Ok(()) }
     }
@@ -143,11 +141,12 @@ impl Simulation {
         })
     }
 
-    /// Moves the velocities of the scratch state onto constraints that move, and inside a step its positions first.
+    /// Moves the scratch state onto constraints that move: inside a step its positions, then, if they are asked for, its
+    /// `velocities`.
     ///
     /// # Errors
     /// A matrix is singular.
-    fn lead(&mut self) -> Result<(), SolveError> {
+    fn lead(&mut self, velocities: bool) -> Result<(), SolveError> {
         if !self.model.is_led() {
             return Ok(());
         }
@@ -169,6 +168,9 @@ impl Simulation {
                 retract(model.nodes(), &start, &d, &mut s.q);
             }
         }
-        move_velocities(model, s, work)
+        if velocities {
+            move_velocities(model, s, work, MOST_MOVES, None)?;
+        }
+        Ok(())
     }
 }

@@ -257,6 +257,7 @@ impl Simulation {
             shown: Audit::default(),
             events: Vec::new(),
             aside: None,
+            aside_of: 0,
             sampled: (0.0, 0),
             memory: self.memory.clone(),
             jumped: false,

@@ -153,6 +153,8 @@ pub struct Simulation {
     scratch: State,
     /// Scratch of samples that take more than a look; made when first needed.
     aside: Option<Box<Workspace>>,
+    /// The step, counted, that it has a matrix of.
+    aside_of: u64,
     /// Time at which the present advance began, and the number of its next sample.
     sampled: (f64, u64),
     /// Over which time errors add up.
@@ -219,6 +221,7 @@ impl Simulation {
             previous,
             scratch,
             aside: None,
+            aside_of: 0,
             sampled: (0.0, 0),
             memory,
             jumped: false,

@@ -11,11 +11,20 @@ use crate::solve::linear::SolveError;
 /// What moving velocities onto the constraints may change of forces, in parts of those at work.
 const STRAINED: f64 = 1e-3;
 /// What moving velocities onto the constraints leaves of how far they were off.
-const MET: f64 = 1e-6;
+const MET: f64 = 1e-4;
 /// Most solutions for that: a Jacobian from nearby needs more than one where bodies turn.
-const MOST_MOVES: usize = 4;
+pub(crate) const MOST_MOVES: usize = 4;
 /// Roundings of positions that constraints may be off by.
 pub(super) const ROUNDINGS: f64 = 8.0;
+
+/// How velocities were moved onto the constraints.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Moved {
+    /// How often.
+    pub times: usize,
+    /// What they were to be off by in the end.
+    pub goal: f64,
+}
 
 /// Replaces velocities, accelerations and multipliers by those for output: velocities moved onto the constraints, and what
 /// the index-1 system gives there. The integrator's own are noisier.
@@ -142,7 +151,8 @@ pub(crate) fn consistent_by_iteration(
     Ok(())
 }
 
-/// Moves velocities onto the constraints in the metric of an iteration matrix from nearby, whose factors the workspace holds.
+/// Moves velocities onto the constraints in the metric of an iteration matrix from nearby, whose factors the workspace holds:
+/// at most so often, until the sum of what they are off by is down to a `goal`, or to a share of what it was.
 ///
 /// # Errors
 /// A matrix is singular.
@@ -150,26 +160,42 @@ pub(crate) fn move_velocities(
     model: &Model,
     state: &mut State,
     work: &mut Workspace,
-) -> Result<(), SolveError> {
+    most: usize,
+    goal: Option<f64>,
+) -> Result<Moved, SolveError> {
     let (nv, m) = (model.velocities(), model.multipliers());
-    let (mut rate, mut first) = (vec![0.0; m], f64::INFINITY);
-    for k in 0..MOST_MOVES {
-        model.constraint_rates(&state.at(), &mut work.system, &mut rate);
+    let mut kept = std::mem::take(&mut work.rates);
+    model.keep_rates(&state.at(), &mut kept);
+    let (mut rate, mut x) = (vec![0.0; m], Vec::with_capacity(nv + m));
+    let (mut moved, mut before) = (Moved::default(), 0.0);
+    let mut done = Ok(());
+    while done.is_ok() && moved.times < most {
+        model.kept_rates(&kept, &state.v, &mut rate);
         let scaled = rate.iter().zip(model.row_scale()).map(|(rate, scale)| (rate / scale).powi(2));
         let off = scaled.sum::<f64>().sqrt();
-        if k == 0 {
-            first = off;
+        if moved.times == 0 {
+            moved.goal = goal.unwrap_or(MET * off);
         }
         // as it stands at zero, and where there are no constraints
-        if off <= MET * first && (k > 0 || off == 0.0) {
+        if off <= moved.goal && (goal.is_some() || moved.times > 0 || off == 0.0) {
             break;
         }
-        let mut x = vec![0.0; nv];
+        x.clear();
+        x.resize(nv, 0.0);
         x.extend(rate.iter().map(|rate| -rate));
-        work.solve(model, Which::Iteration, &mut x)?;
-        state.v.iter_mut().zip(&x).for_each(|(v, x)| *v += x);
+        done = work.solve(model, Which::Iteration, &mut x);
+        if done.is_ok() {
+            state.v.iter_mut().zip(&x).for_each(|(v, x)| *v += x);
+            moved.times += 1;
+        }
+        // a move leaves as large a part as the one before did
+        if off * off <= moved.goal * before {
+            break;
+        }
+        before = off;
     }
-    Ok(())
+    work.rates = kept;
+    done.map(|()| moved)
 }
 
 /// The velocities nearest to those of a state that the constraints allow, by the Jacobian in the mass matrix of this state.

@@ -23,8 +23,8 @@ pub use crate::model::limit::Limit;
 pub use alpha::Alpha;
 pub use consistent::consistent;
 pub(crate) use consistent::{
-    accelerate, agree, agree_in_velocity, consistent_by_iteration, consistent_by_mass, move_velocities,
-    way_back,
+    MOST_MOVES, accelerate, agree, agree_in_velocity, consistent_by_iteration, consistent_by_mass,
+    move_velocities, way_back,
 };
 pub(crate) use norm::{Group, Speeds};
 pub use options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping};

@@ -10,6 +10,7 @@ use crate::model::Model;
 use crate::model::assembly::System;
 use crate::model::limit::Limit;
 use crate::model::node::NodeKind;
+use crate::model::rates::KeptRates;
 use crate::model::state::{At, State};
 use crate::model::structure::Structure;
 use crate::model::term::Weights;
@@ -83,6 +84,8 @@ pub struct Workspace {
     /// The iteration matrix without dimensions, where it is wished.
     pub(crate) scaled: Option<Scaled>,
     correction: Vec<f64>,
+    /// What velocities that are moved onto the constraints are held against.
+    pub(super) rates: KeptRates,
     pub(crate) trial: Trial,
     /// Scratch of Radau IIA; made when first needed.
     pub(crate) stages: Option<Box<Stages>>,
@@ -141,6 +144,7 @@ impl Workspace {
             softening: model.redundancy().map(|_| Softening::new(model, s)),
             scaled: None,
             correction: Vec::new(),
+            rates: KeptRates::default(),
             trial: Trial {
                 q: model.start.q.clone(),
                 v: zero(),
