@@ -156,6 +156,42 @@ fn a_block_slides_as_far_as_its_energy_lasts() {
     }
 }
 
+/// A block of 6 kg that slides up a slope of 20° at first.
+fn uphill(v: f64, friction: Friction) -> Scene {
+    let (sin, cos) = 20_f64.to_radians().sin_cos();
+    let normal = [-sin, 0.0, cos];
+    let height = R - 6.0 * G * cos / 1e6;
+    let mut block = PointMassSpec::new("block", normal.map(|n| height * n), 6.0);
+    block.velocity = [v * cos, 0.0, v * sin];
+    let slope = ContactSpec { shape: ShapeSpec::Plane { normal }, ..floor(1e6, friction) };
+    let mut scene = Scene::new();
+    scene.element(block).force(GravitySpec::default()).force(slope);
+    scene
+}
+
+/// Where steps mustn't be so short as to see what slides turn round, the run ends with the instant and what to do; and that does.
+#[test]
+fn what_turns_round_within_the_shortest_step_is_told_of_with_the_remedy() {
+    let end = |h_min: f64, elastic_slip: Option<f64>| {
+        let scene = uphill(5.0, Friction { elastic_slip, ..Friction::new(0.2) });
+        let stepping = Stepping::Controlled { tolerance: 1e-2 };
+        let options = Options { stepping, h_min: Some(h_min), ..Options::default() };
+        let model = scene.build().unwrap_or_else(|e| panic!("{e}"));
+        let mut s = Simulation::new(model, &options, 3.0).unwrap_or_else(|e| panic!("{e}"));
+        s.advance(3.0, f64::INFINITY, &mut ())
+    };
+    let error = end(0.1, None).expect_err("no step is short enough").to_string();
+    println!("{error}");
+    for part in
+        ["t = 1.0", "floor", "turned round within a step", "A smaller `h_min`", "a larger `elastic_slip`"]
+    {
+        assert!(error.contains(part), "no {part} in: {error}");
+    }
+    assert_eq!(end(3e-3, None), Ok(End::Done));
+    assert!(end(0.01, None).is_err());
+    assert_eq!(end(0.01, Some(0.02)), Ok(End::Done));
+}
+
 /// Steps of error control that grow while something slides don't leap over the instant at which it stops or turns round.
 #[test]
 fn what_slides_for_long_stops_where_it_should() {
@@ -174,15 +210,8 @@ fn what_slides_for_long_stops_where_it_should() {
         }
         // up a slope of 20° and down again
         for mu in [0.1, 0.2, 0.3_f64] {
-            let (sin, cos) = 20_f64.to_radians().sin_cos();
-            let (normal, v) = ([-sin, 0.0, cos], 5.0);
-            let height = R - 6.0 * G * cos / 1e6;
-            let mut block = PointMassSpec::new("block", normal.map(|n| height * n), 6.0);
-            block.velocity = [v * cos, 0.0, v * sin];
-            let mut scene = Scene::new();
-            let plane = ShapeSpec::Plane { normal };
-            let slope = ContactSpec { shape: plane, ..floor(1e6, Friction::new(mu)) };
-            scene.element(block).force(GravitySpec::default()).force(slope);
+            let ((sin, cos), v) = (20_f64.to_radians().sin_cos(), 5.0);
+            let scene = uphill(v, Friction::new(mu));
             let s = run(&scene, &(scheme, tolerance), 3.0);
             let [up, down] = [G * (sin + mu * cos), G * (sin - mu * cos)];
             let (peak, back) = (v * v / (2.0 * up), 0.5 * down * (3.0 - v / up).powi(2));

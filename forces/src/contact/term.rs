@@ -233,8 +233,8 @@ impl Remembers for Contact {
     fn overran(&self, before: &At<'_>, after: &At<'_>, far: &dyn Fn(usize, f64) -> bool) -> Option<String> {
         let turned = || {
             format!(
-                "{}: what slid has turned round within a step. A larger `elastic_slip` of its friction gives way farther, and longer \
-                 steps follow it",
+                "{}: what slid has turned round within a step. A smaller `h_min` sees it turn, or a larger `elastic_slip` of its \
+                 friction gives way farther, and longer steps follow it",
                 self.label
             )
         };
