@@ -1,6 +1,7 @@
 //! How long a motion remembers its errors, and what that makes of long runs.
 
 use ropewalk::{Options, Simulation, simulate};
+use ropewalk_core::integrator::Scheme;
 use ropewalk_core::integrator::Stepping;
 use ropewalk_scene::{Format, Scene, SceneFile};
 
@@ -70,6 +71,30 @@ fn the_tension_of_what_forgets_is_within_its_tolerance() {
     assert_eq!(got.len(), want.len());
     for (a, b) in got.iter().zip(want) {
         assert!((a - b).abs() <= 0.01 * largest, "{a} instead of {b} N, of {largest} N");
+    }
+}
+
+/// A slack hose that glides down forgets how it swings soon, and how far it has glided hardly at all: the errors of a few
+/// steps are of the first kind, what adds up over many of the other.
+#[test]
+fn a_hose_that_glides_is_within_its_tolerance() {
+    let ends = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = ropewalk::read("hose-straight").expect("a bundled scene");
+        change(&mut scene);
+        let history = simulate(&scene).unwrap_or_else(|e| panic!("{e}"));
+        let column = |axis: &str| history.column(&format!("hose.end.{axis}")).expect("the end").to_vec();
+        ["x", "z"].map(column)
+    };
+    let [x, z] = ends(&|scene| {
+        scene.solver.scheme = Scheme::RadauIia5;
+        scene.solver.stepping = Stepping::Controlled { tolerance: 1e-7 };
+    });
+    for tolerance in [3e-5, 1e-5] {
+        let [a, b] = ends(&|scene| scene.solver.stepping = Stepping::Controlled { tolerance });
+        let off = (0..x.len()).map(|i| (a[i] - x[i]).hypot(b[i] - z[i]) / 30.0 / tolerance);
+        let most = off.fold(0.0, |m: f64, e| if e <= m { m } else { e });
+        println!("{tolerance:e}: off by {most:.2} times that");
+        assert!(most <= 3.0, "{most} times {tolerance}");
     }
 }
 

@@ -24,8 +24,12 @@ const GIVEN: [f64; 2] = [1e5, 10.0];
 const BLOWN: f64 = 1e-5;
 /// By how much at most.
 const MOST: f64 = 1e3;
-/// Steps whose errors make the difference.
-const KICK: u64 = 4;
+/// Steps whose errors make the difference: those of a few swing and fade, what adds up takes more of them to stand out.
+const KICK: u64 = 16;
+/// Steps after these that are looked at in any case.
+const FEWEST: u64 = 8;
+/// What a third of a look adds at least, in parts of the third before, where it is seen how what fades slowly fades.
+const SLOW: f64 = 0.3;
 /// What is left of a forgotten difference …
 const FORGOTTEN: f64 = 0.02;
 /// … or what the second half of a look adds to its sum.
@@ -74,9 +78,36 @@ impl Fading {
     /// Whether it is gone, and has been for as long as it was there; or whether what was left of it in the second half of the
     /// time adds next to nothing.
     fn is_forgotten(&self, t: f64) -> bool {
-        let half = self.grew.partition_point(|[then, _]| *then < 0.5 * t);
-        let before = self.grew.get(half).map_or(0.0, |[_, sum]| *sum);
-        t > 2.0 * self.alive || self.sum - before < ADDS * self.sum
+        t > 2.0 * self.alive || self.sum - self.until(0.5 * t) < ADDS * self.sum
+    }
+
+    /// Whether it is seen to fade, slowly, so that what is to come adds no more than what was.
+    fn is_fading(&self, t: f64) -> bool {
+        self.fades(t) > SLOW && self.rest(t) <= self.sum
+    }
+
+    /// The integral until a time.
+    fn until(&self, t: f64) -> f64 {
+        let known = self.grew.partition_point(|[then, _]| *then < t);
+        self.grew.get(known).map_or(0.0, |[_, sum]| *sum)
+    }
+
+    /// What the last third of the time adds to the integral, in parts of the second.
+    fn fades(&self, t: f64) -> f64 {
+        let [first, second] = [1.0, 2.0].map(|k| self.until(k * t / 3.0));
+        (self.sum - second) / (second - first)
+    }
+
+    /// What time to come adds to the integral if it goes on to fade so; nothing if it is the noise that is left.
+    fn rest(&self, t: f64) -> f64 {
+        let (rate, last) = (self.fades(t), self.sum - self.until(2.0 * t / 3.0));
+        if rate < 1.0 { last * rate / (1.0 - rate) } else { f64::INFINITY }
+    }
+
+    /// The integral over all time.
+    fn total(&self, t: f64) -> f64 {
+        let rest = self.rest(t);
+        if rest.is_finite() { self.sum + rest } else { self.sum }
     }
 }
 
@@ -121,7 +152,7 @@ impl Simulation {
         let (end, nodes) = (self.memory.end(), self.model.nodes());
         let mut parts = vec![Fading::default(); self.work.norms.groups.len()];
         let mut tension = Fading::default();
-        let (mut begun, mut first, mut off) = (self.state.t, 0.0, Vec::new());
+        let (mut begun, mut off) = (self.state.t, Vec::new());
         let least = SMALL_TENSION * self.integrator.options().force_tolerance;
         for k in 0..most {
             let (t, steps, dear) = (plain.state.t, halved.work.counts.steps, DEAR * most);
@@ -148,18 +179,17 @@ impl Simulation {
             parts.iter_mut().zip(&off).for_each(|(part, &off)| part.note(off, now - begun, h));
             tension.note(strained, now - begun, h);
             let all = parts.iter().fold(0.0f64, |m, p| m.max(p.most));
-            if k + 1 == KICK {
-                first = all;
-            }
             if !(all > NOISE) {
                 break;
             }
             let pulls = (!(tension.most < least)).then_some(&tension);
             let moved = || parts.iter().filter(|p| !(p.most < SMALL * all));
             let counts = || moved().chain(pulls);
-            if counts().all(|p| p.is_forgotten(now - begun)) && k > 3 * KICK {
-                let positions = counts().fold(0.0, |m: f64, p| m.max(p.sum / p.most));
-                let forces = FORCES * self.tolerated() * tension.sum / first;
+            let t = now - begun;
+            let long = k >= (most / 4).max(8 * KICK);
+            if k > KICK + FEWEST && counts().all(|p| p.is_forgotten(t) || long && p.is_fading(t)) {
+                let positions = counts().fold(0.0, |m: f64, p| m.max(p.total(t) / p.most));
+                let forces = FORCES * self.tolerated() * tension.total(t) / all;
                 return Ok(Remembers::For(positions.max(forces)));
             }
             // what will have been remembered for so long makes no difference to the run
