@@ -98,13 +98,13 @@ impl Fading {
         (self.sum - second) / (second - first)
     }
 
-    /// What time to come adds to the integral if it goes on to fade so; nothing if it is the noise that is left.
+    /// What time to come adds to the integral if it goes on to fade as it does; without end where it doesn't.
     fn rest(&self, t: f64) -> f64 {
         let (rate, last) = (self.fades(t), self.sum - self.until(2.0 * t / 3.0));
         if rate < 1.0 { last * rate / (1.0 - rate) } else { f64::INFINITY }
     }
 
-    /// The integral over all time.
+    /// The integral over all time; of what is forgotten noise is left that doesn't fade, and doesn't count.
     fn total(&self, t: f64) -> f64 {
         let rest = self.rest(t);
         if rest.is_finite() { self.sum + rest } else { self.sum }
