@@ -10,7 +10,8 @@ use crate::model::term::Energy;
 use crate::solve::integrator::{Limit, StepError, restart};
 use std::sync::Arc;
 
-/// From which value on a load is searched for: strains are off by what velocities are, forces by what multipliers swing.
+/// From which value on a load is searched for at the end of a step, of strains and of forces: the former are off by what
+/// velocities are, the latter by what multipliers swing. What is missed there comes up in the next step.
 const NEAR: [f64; 2] = [-0.1, -0.5];
 /// By how much an allowed load may be exceeded when it is found to be reached.
 const OVER: f64 = 1e-6;

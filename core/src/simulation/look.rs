@@ -186,6 +186,7 @@ impl Simulation {
             let moved = || parts.iter().filter(|p| !(p.most < SMALL * all));
             let counts = || moved().chain(pulls);
             let t = now - begun;
+            // what swings has faded by then, and no longer hides what fades slowly
             let long = k >= (most / 4).max(8 * KICK);
             if k > KICK + FEWEST && counts().all(|p| p.is_forgotten(t) || long && p.is_fading(t)) {
                 let positions = counts().fold(0.0, |m: f64, p| m.max(p.total(t) / p.most));
