@@ -31,6 +31,7 @@ mod drag_coefficient;
 mod free_vessel;
 mod froude_krylov;
 mod function;
+mod gauss;
 mod gravity;
 mod in_water;
 mod in_waves;

@@ -58,8 +58,15 @@ fn a_latch_holds_until_its_limit_and_the_energy_is_accounted_for() {
     // half of 20 N over 2 mm was in the spring
     let lost = history.last("energy.dissipated").expect("dissipated");
     assert!((0.02..0.03).contains(&lost), "{lost} J");
-    let imbalance = history.last("energy.imbalance").expect("imbalance").abs();
-    assert!(imbalance < 2e-2 * lost, "{imbalance} J of {lost} J");
+    // while the force fades, and as steps grow from there: at their ends the pull swings about nought by tens of newtons
+    for (t, imbalance) in history.times().iter().zip(history.column("energy.imbalance").expect("imbalance")) {
+        assert!(imbalance.abs() < 3e-3 * lost, "{imbalance} J of {lost} J at {t} s");
+    }
+    // fixed steps may leap over all of it
+    scene.solver.stepping = Stepping::Fixed { h: 2e-3 };
+    let history = simulate(&scene).unwrap_or_else(|e| panic!("{e}"));
+    let imbalance = history.last("energy.imbalance").expect("imbalance");
+    assert!(imbalance.abs() < 2e-2 * lost, "{imbalance} J of {lost} J");
 }
 
 #[test]

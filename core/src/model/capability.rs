@@ -4,7 +4,7 @@
 use crate::model::column::Column;
 use crate::model::solid::Solid;
 use crate::model::state::At;
-use crate::model::term::Term;
+use crate::model::term::{Power, Term};
 use std::sync::Arc;
 
 /// Depends on time otherwise than through the state.
@@ -31,6 +31,11 @@ pub trait Foresees {
     /// well. The step is then repeated smaller, and if that doesn't help the run ends with these words.
     fn passes(&self, _before: &At<'_>, _after: &At<'_>) -> Option<String> {
         None
+    }
+    /// What energy the trapezoidal rule misses of its power between two states [J]: of what fades or sets in within a step of
+    /// its own accord, as it itself knows it.
+    fn missed(&self, _before: &At<'_>, _after: &At<'_>) -> Power {
+        Power::zero()
     }
 }
 

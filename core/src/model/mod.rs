@@ -54,7 +54,7 @@ use crate::model::redundancy::Redundancy;
 use crate::model::remesh::Plan;
 use crate::model::state::{At, Control, State};
 use crate::model::structure::Structure;
-use crate::model::term::Term;
+use crate::model::term::{Power, Term};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -546,6 +546,14 @@ impl Model {
     /// The longest step from here that leaps over nothing that a term has ahead [s].
     pub fn step_limit(&self, at: &At<'_>) -> f64 {
         self.watchful().map(|term| term.step_limit(at)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// What the trapezoidal rule misses of the power of what fades or sets in between two states [J].
+    pub(crate) fn missed(&self, before: &At<'_>, after: &At<'_>) -> Power {
+        self.watchful().fold(Power::zero(), |mut sum, term| {
+            sum += term.missed(before, after);
+            sum
+        })
     }
 
     /// Whether something changes with time of its own accord.

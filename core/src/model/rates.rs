@@ -23,8 +23,15 @@ impl Model {
     /// The same of one constraint.
     pub(crate) fn constraint_rate(&self, c: usize, at: &At<'_>, sys: &mut System, rate: &mut [f64]) {
         sys.jacobian.resize(self.freedoms_of(c) * rate.len(), 0.0);
-        self.relate(c, at, &mut sys.jacobian, rate);
+        self.relate(c, at, &mut sys.jacobian, rate, &mut [0.0; MOST_ROWS]);
         self.add_rate(c, &sys.jacobian, at.v, rate);
+    }
+
+    /// What accelerations of a state are off one constraint by, `G v̇` and its bias.
+    pub(crate) fn constraint_drift(&self, c: usize, at: &At<'_>, sys: &mut System, drift: &mut [f64]) {
+        sys.jacobian.resize(self.freedoms_of(c) * drift.len(), 0.0);
+        self.relate(c, at, &mut sys.jacobian, &mut [0.0; MOST_ROWS], drift);
+        self.add_rate(c, &sys.jacobian, at.a, drift);
     }
 
     /// Keeps what the constraints say of velocities at the place of a state.
@@ -38,7 +45,7 @@ impl Model {
             let (own, own_given);
             (own, jacobian) = jacobian.split_at_mut(m * self.freedoms_of(c));
             (own_given, given) = given.split_at_mut(m);
-            self.relate(c, at, own, own_given);
+            self.relate(c, at, own, own_given, &mut [0.0; MOST_ROWS]);
         }
     }
 
@@ -54,16 +61,18 @@ impl Model {
         }
     }
 
-    /// What a constraint relates the velocities of its nodes by: its Jacobian and `∂g/∂t`; zero where it has let go.
-    fn relate(&self, c: usize, at: &At<'_>, jacobian: &mut [f64], given: &mut [f64]) {
-        let (mut g, mut bias) = ([0.0; MOST_ROWS], [0.0; MOST_ROWS]);
-        let (constraint, m) = (&self.constraints[c], given.len());
+    /// What a constraint relates the velocities and accelerations of its nodes by: its Jacobian, `∂g/∂t` and the bias; zero
+    /// where it has let go.
+    fn relate(&self, c: usize, at: &At<'_>, jacobian: &mut [f64], given: &mut [f64], bias: &mut [f64]) {
+        let (mut g, m) = ([0.0; MOST_ROWS], self.rows_of(c).len());
+        let (given, bias) = (&mut given[..m], &mut bias[..m]);
         if self.holds(c, at.internal) {
-            constraint.jacobian(&self.nodes, at, &mut g[..m], jacobian);
-            constraint.rates(&self.nodes, at, given, &mut bias[..m]);
+            self.constraints[c].jacobian(&self.nodes, at, &mut g[..m], jacobian);
+            self.constraints[c].rates(&self.nodes, at, given, bias);
         } else {
             jacobian.fill(0.0);
             given.fill(0.0);
+            bias.fill(0.0);
         }
     }
 

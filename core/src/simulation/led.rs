@@ -6,6 +6,7 @@
 
 use super::Simulation;
 use super::dense::Dense;
+use crate::model::Model;
 use crate::model::constraint::{MOST_ROWS, RowKind};
 use crate::model::node::retract;
 use crate::model::term::{Energy, Power};
@@ -14,6 +15,8 @@ use crate::solve::linear::SolveError;
 
 /// What velocities are off the constraints by that the balance of energy takes as it is, in parts of the fastest.
 const STRAYS: f64 = 1e-4;
+/// What accelerations are off them by where forces swing, in parts of the largest.
+const SWINGS: f64 = 0.03;
 /// What energy the trapezoidal rule may leave to doubt in a step, in parts of what there is …
 const ROUGH: f64 = 1e-4;
 /// … what Simpson's rule may change of it to be taken at its word, and how often a step is halved for that.
@@ -21,14 +24,31 @@ const MENDED: f64 = 0.03;
 const MOST_HALVINGS: u32 = 4;
 
 impl Simulation {
-    /// Makes the scratch state the one at the end of the step with the velocities that motions lead to, of bodies with
-    /// the forces as well, by which they bring energy in; whether there are such motions, and it could be done.
-    pub(super) fn led_to_end(&mut self) -> bool {
-        if !self.model.is_led() || !self.is_of_bodies() && !self.strays() {
-            return false;
+    /// Energies and powers at the end of the last step, with the velocities that motions lead to, of bodies with the forces as
+    /// well, by which they bring energy in; of others only where these swing.
+    pub(super) fn balance_at_end(&mut self) -> (Energy, Power) {
+        if !self.model.is_led() {
+            return self.model.balance(&self.state.at(), &self.state.lambda);
         }
         self.scratch.clone_from(&self.state);
-        self.lead_with(self.is_of_bodies()).is_ok()
+        let bodies = self.is_of_bodies();
+        if bodies || self.strays() {
+            self.lead_end(bodies);
+        }
+        let (energy, power) = self.model.balance(&self.scratch.at(), &self.scratch.lambda);
+        let doubt = (self.state.t - self.previous.t) * (power.supplied - self.power.supplied).abs();
+        if bodies || doubt <= ROUGH * self.audit.scale_with(energy) || !self.swings() {
+            return (energy, power);
+        }
+        self.lead_end(true);
+        self.model.balance(&self.scratch.at(), &self.scratch.lambda)
+    }
+
+    /// Leads the scratch state at the end of the step; where that can't be done it stays as it is.
+    fn lead_end(&mut self, forces: bool) {
+        if self.lead_with(forces).is_err() {
+            self.scratch.clone_from(&self.state);
+        }
     }
 
     fn is_of_bodies(&self) -> bool {
@@ -50,19 +70,19 @@ impl Simulation {
 
     /// What the trapezoidal rule misses of the work of motions over the last step, or its beginning, with the energies at its
     /// end: where powers at its ends differ, those inside of it are summed up, as no error of position makes the steps
-    /// of what is led shorter.
-    pub(super) fn missed(&mut self, span: [f64; 2], ends: [Power; 2], energy: Energy) -> Power {
+    /// of what is led shorter. Nothing where they aren't.
+    pub(super) fn missed(&mut self, span: [f64; 2], ends: [Power; 2], energy: Energy) -> Option<Power> {
         if !self.model.is_led() || !self.is_of_bodies() {
-            return Power::zero();
+            return None;
         }
         let scale = self.audit.scale_with(energy);
         let rough = Power::between(ends[0], ends[1], 0.5);
         let h = span[1] - span[0];
         let net = |p: &Power| p.supplied + p.carried - p.dissipated;
         if h * (net(&ends[1]) - net(&ends[0])).abs() <= ROUGH * scale {
-            return Power::zero();
+            return None;
         }
-        self.mean_power(span, ends, MENDED * scale, MOST_HALVINGS).map_or(Power::zero(), |mean| Power {
+        self.mean_power(span, ends, MENDED * scale, MOST_HALVINGS).map(|mean| Power {
             dissipated: h * (mean.dissipated - rough.dissipated),
             supplied: h * (mean.supplied - rough.supplied),
             carried: h * (mean.carried - rough.carried),
@@ -76,7 +96,7 @@ impl Simulation {
         span: [f64; 2],
         begin: Power,
         energy: Energy,
-    ) -> Option<(Power, Power)> {
+    ) -> Option<(Power, Option<Power>)> {
         if !self.model.is_led() || !self.is_of_bodies() {
             return None;
         }
@@ -119,26 +139,30 @@ impl Simulation {
             return;
         }
         self.depart(end);
-        if self.keep_audit && !self.model.inputs().is_empty() && self.led_to_end() {
-            self.power = self.model.power(&self.scratch.at(), &self.scratch.lambda);
+        if self.keep_audit && !self.model.inputs().is_empty() && self.model.is_led() {
+            self.power = self.balance_at_end().1;
         }
     }
 
     /// Whether velocities at the end of the step are off what motions lead to by a share of them that shows in energies.
     fn strays(&mut self) -> bool {
+        let most = STRAYS * self.fastest(&self.state.v);
         let (model, at, system) = (&*self.model, self.state.at(), &mut self.work.system);
-        let places = model.nodes().iter().filter(|n| n.kind.has_position()).flat_map(|n| n.v..n.v + 3);
-        let fastest = places.map(|i| self.state.v[i].abs()).fold(0.0, f64::max);
-        let mut rates = [0.0; MOST_ROWS];
-        // what is no length, such as an angle, counts at the size of the model; a NaN strays
-        let most = |kind: RowKind| {
-            STRAYS * if kind == RowKind::Position { fastest } else { fastest / model.length() }
-        };
-        !model.moving_constraints().all(|(c, constraint)| {
-            let rates = &mut rates[..constraint.rows().len()];
-            model.constraint_rate(c, &at, system, rates);
-            rates.iter().zip(constraint.rows()).all(|(rate, kind)| rate.abs() <= most(*kind))
-        })
+        !model.are_met(most, |c, rates| model.constraint_rate(c, &at, system, rates))
+    }
+
+    /// Whether accelerations at the end of the step are off what motions lead to by so much that forces swing about those of
+    /// the motion.
+    fn swings(&mut self) -> bool {
+        let most = SWINGS * self.fastest(&self.state.a);
+        let (model, at, system) = (&*self.model, self.state.at(), &mut self.work.system);
+        !model.are_met(most, |c, drift| model.constraint_drift(c, &at, system, drift))
+    }
+
+    /// The largest rate of a place.
+    fn fastest(&self, rates: &[f64]) -> f64 {
+        let places = self.model.nodes().iter().filter(|n| n.kind.has_position());
+        places.flat_map(|n| &rates[n.v..n.v + 3]).fold(0.0, |m, rate| m.max(rate.abs()))
     }
 
     /// Moves the scratch state onto constraints that move: inside a step its positions, then, if they are asked for, its
@@ -172,5 +196,22 @@ impl Simulation {
             move_velocities(model, s, work, MOST_MOVES, None)?;
         }
         Ok(())
+    }
+}
+
+impl Model {
+    /// Whether what constraints that move are off by, which is asked for one by one, is at most this; what is no length,
+    /// such as an angle, counts at the size of the model.
+    fn are_met(&self, most: f64, mut off: impl FnMut(usize, &mut [f64])) -> bool {
+        let mut rows = [0.0; MOST_ROWS];
+        self.moving_constraints().all(|(c, constraint)| {
+            let rows = &mut rows[..constraint.rows().len()];
+            off(c, rows);
+            // a NaN isn't met
+            let met = |(off, kind): (&f64, &RowKind)| {
+                off.abs() <= if *kind == RowKind::Position { most } else { most / self.length() }
+            };
+            rows.iter().zip(constraint.rows()).all(met)
+        })
     }
 }

@@ -381,13 +381,11 @@ impl Simulation {
     fn account(&mut self) {
         if self.keep_audit {
             let begin = self.work.clocks.start();
-            let (energy, power) = match self.led_to_end() {
-                true => self.model.balance(&self.scratch.at(), &self.scratch.lambda),
-                false => self.model.balance(&self.state.at(), &self.state.lambda),
-            };
+            let (energy, power) = self.balance_at_end();
             let h = self.state.t - self.previous.t;
             self.accounted = (self.audit, self.power);
             let missed = self.missed([self.previous.t, self.state.t], [self.power, power], energy);
+            let missed = missed.unwrap_or_else(|| self.model.missed(&self.previous.at(), &self.state.at()));
             self.audit.add_all(h, energy, self.power, power, missed);
             self.power = power;
             self.work.clocks.stop(Phase::Audit, begin);
@@ -474,9 +472,15 @@ impl Simulation {
         if asked && self.keep_audit && begin < now && now < end {
             let (before, power) = self.accounted;
             let energy = self.model.energy(&self.scratch.at());
-            let straight = Power::between(power, self.power, (now - begin) / (end - begin));
             let led = self.led_inside([begin, now], power, energy);
-            let (then, missed) = led.unwrap_or((straight, Power::zero()));
+            let fading = self.model.missed(&self.previous.at(), &self.scratch.at());
+            let (then, missed) = match led {
+                Some((then, missed)) => (then, missed.unwrap_or(fading)),
+                None if fading == Power::zero() => {
+                    (Power::between(power, self.power, (now - begin) / (end - begin)), fading)
+                }
+                None => (self.model.power(&self.scratch.at(), &self.scratch.lambda), fading),
+            };
             self.shown = before;
             self.shown.add_all(now - begin, energy, power, then, missed);
         }

@@ -1,8 +1,9 @@
 //! What touches: single balls, and slender pieces whose places of contact are found anew at every evaluation.
 
 use super::friction::Grip;
-use super::search::{Cubic, Look, Search, gauss};
+use super::search::{Cubic, Look, Search};
 use super::seat::{Fixed, Frame};
+use crate::gauss::gauss;
 use ropewalk_core::held::Held;
 use ropewalk_core::{At, SpanLine};
 use std::sync::Arc;

@@ -10,10 +10,11 @@ use super::block::{Block, MOST};
 use super::bristles::Bristle;
 use super::friction::{CELLS, Pressed};
 use super::group::{Ball, Group, Span, What};
-use super::search::{gauss, passage};
+use super::search::passage;
 use super::seat::{Frame, Seat};
 use super::shape::Shape;
 use super::term::Contact;
+use crate::gauss::gauss;
 use ropewalk_core::held::{Held, three};
 use ropewalk_core::{Assembly, At, SpanLine, V3, dot};
 

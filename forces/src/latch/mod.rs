@@ -4,6 +4,7 @@ mod spec;
 
 pub use spec::{FloorSpec, LatchSpec};
 
+use crate::gauss::gauss;
 use ropewalk_core::held::{Held, Pull, delta, dofs, pull};
 use ropewalk_core::rotation::M3;
 use ropewalk_core::{
@@ -76,15 +77,45 @@ impl Latch {
         let [x0, x1] = [seat.ends[0].x(at), seat.ends[1].x(at)];
         let [v0, v1] = [seat.ends[0].velocity(at), seat.ends[1].velocity(at)];
         let released = at.internal[seat.variable];
-        let (left, rate) = if released == 0.0 {
-            (1.0, 0.0)
-        } else {
-            let u = ((at.t - released) / self.fade).clamp(0.0, 1.0);
-            let step = u * u * u * (10.0 + u * (6.0 * u - 15.0));
-            (1.0 - step, -30.0 * u * u * (1.0 - u) * (1.0 - u) / self.fade)
-        };
+        let (left, rate) = if released == 0.0 { (1.0, 0.0) } else { self.left(at.t - released) };
         let minus = |a: V3<f64>, b: V3<f64>| std::array::from_fn(|i| a[i] - b[i]);
         Moment { d: minus(x1, x0), w: minus(v1, v0), left, rate }
+    }
+
+    /// What is left of a hold so long after its release, and its rate.
+    fn left(&self, since: f64) -> (f64, f64) {
+        let u = (since / self.fade).clamp(0.0, 1.0);
+        let step = u * u * u * (10.0 + u * (6.0 * u - 15.0));
+        (1.0 - step, -30.0 * u * u * (1.0 - u) * (1.0 - u) / self.fade)
+    }
+
+    /// The energy that a whole hold has more than the floor in its place, which goes as the hold fades; and its rate.
+    fn at_stake(&self, seat: &Seat, at: &At<'_>) -> [f64; 2] {
+        let (m, depth) = (self.moment(seat, at), self.depth(seat, at));
+        let (spring, its_rate) = (self.stiffness * dot(&m.d, &m.d), self.stiffness * dot(&m.d, &m.w));
+        let Some(floor) = self.floor.filter(|_| depth > 0.0) else { return [0.5 * spring, its_rate] };
+        let deeper = -dot(&floor.normal, &seat.ends[1].velocity(at));
+        [0.5 * (spring - floor.stiffness * depth * depth), its_rate - floor.stiffness * depth * deeper]
+    }
+
+    /// The energy that the fading of a hold takes between two states: what is at stake follows the cubic through its ends,
+    /// and Gauss's rule of four points is exact for that times the rate of the fading.
+    fn faded(&self, seat: &Seat, before: &At<'_>, after: &At<'_>) -> f64 {
+        let released = after.internal[seat.variable];
+        let [from, to] = [before.t.max(released), after.t.min(released + self.fade)];
+        if released == 0.0 || !(from < to) {
+            return 0.0;
+        }
+        let [[e0, r0], [e1, r1]] = [before, after].map(|at| self.at_stake(seat, at));
+        let h = after.t - before.t;
+        let pieces = gauss(4).iter().map(|&(x, weight)| {
+            let t = from + x * (to - from);
+            let (y, z) = ((t - before.t) / h, (after.t - t) / h);
+            let stake =
+                z * z * ((1.0 + 2.0 * y) * e0 + h * y * r0) + y * y * ((1.0 + 2.0 * z) * e1 - h * z * r1);
+            -weight * (to - from) * self.left(t - released).1 * stake
+        });
+        pieces.sum()
     }
 
     /// How deep a point is behind the floor [m].
@@ -169,9 +200,7 @@ impl Term for Latch {
     fn power(&self, at: &At<'_>) -> Power {
         let lost = |seat: &Seat| {
             let m = self.moment(seat, at);
-            let floor = self.floor.map_or(0.0, |f| f.stiffness * self.depth(seat, at).powi(2));
-            m.left * self.damping * dot(&m.w, &m.w)
-                + 0.5 * m.rate * (floor - self.stiffness * dot(&m.d, &m.d))
+            m.left * self.damping * dot(&m.w, &m.w) - m.rate * self.at_stake(seat, at)[0]
         };
         Power { dissipated: self.seats.iter().map(lost).sum(), ..Power::default() }
     }
@@ -185,6 +214,17 @@ impl Foresees for Latch {
         // what fades is not leapt over
         let fades = |s: &Seat| at.internal[s.variable] != 0.0 && at.t < at.internal[s.variable] + self.fade;
         if self.seats.iter().any(fades) { 0.25 * self.fade } else { f64::INFINITY }
+    }
+    fn missed(&self, before: &At<'_>, after: &At<'_>) -> Power {
+        let fading = |s: &&Seat| {
+            let released = after.internal[s.variable];
+            released != 0.0 && before.t < released + self.fade
+        };
+        let missed = |s: &Seat| {
+            let ends = [before, after].map(|at| -self.moment(s, at).rate * self.at_stake(s, at)[0]);
+            self.faded(s, before, after) - 0.5 * (after.t - before.t) * (ends[0] + ends[1])
+        };
+        Power { dissipated: self.seats.iter().filter(fading).map(missed).sum(), ..Power::default() }
     }
 }
 
@@ -221,6 +261,6 @@ impl Event for Release {
             state.internal[variable] = state.t.max(f64::MIN_POSITIVE);
         }
         let all = self.latch.seats.iter().all(|s| state.internal[s.variable] != 0.0);
-        if all && self.stop { Action::Stop } else { Action::Restart }
+        if all && self.stop { Action::Stop } else { Action::Continue }
     }
 }

@@ -155,6 +155,42 @@ fn what_is_taken_is_stored_or_dissipated() {
 }
 
 #[test]
+fn what_a_latch_gives_away_is_known_however_long_the_step() {
+    for seed in 1..=8 {
+        let s = Numbers::new(seed);
+        for mut latch in latches() {
+            // what dampers lose changes with the motion alone, and the floor sets in at a kink
+            latch.damping = 0.0;
+            latch.floor =
+                latch.floor.map(|floor| Floor { stiffness: 30.0, point: [0.0, 0.0, 30.0], ..floor });
+            latch.seats.retain(|seat| !seat.ends.iter().any(|end| matches!(end, Held::Beside { .. })));
+            // along a straight motion what is at stake follows a parabola; steps begin and end before, in and after the fading
+            for [from, to] in [[0.1, 0.5], [0.21, 0.3], [0.3, 0.9], [0.04, 0.06], [0.22, 0.26]] {
+                let lost = |t: f64| {
+                    let mut q = s.q.clone();
+                    let step: Vec<f64> = s.v.iter().map(|v| v * (t - s.t)).collect();
+                    retract(&nodes(), &s.q, &step, &mut q);
+                    (q, t)
+                };
+                let at = |(q, t): &(Vec<f64>, f64)| latch.power(&At { t: *t, q, ..s.at() }).dissipated;
+                let n = 4000;
+                let h = (to - from) / f64::from(n);
+                let all: f64 = (0..n).map(|k| h * at(&lost(from + (f64::from(k) + 0.5) * h))).sum();
+                let [before, after] = [lost(from), lost(to)];
+                let rough = 0.5 * (to - from) * (at(&before) + at(&after));
+                let [first, last] = [&before, &after].map(|(q, t)| At { t: *t, q, ..s.at() });
+                let missed = latch.foresees().unwrap().missed(&first, &last).dissipated;
+                let size = all.abs().max(rough.abs()).max(1e-3);
+                assert!(
+                    (rough + missed - all).abs() < 1e-5 * size,
+                    "{rough} + {missed}, not {all}, {from} to {to}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn a_bushing_between_bodies_keeps_momentum_and_angular_momentum() {
     let s = Numbers::new(3);
     let mut bushing = bushings().remove(0);

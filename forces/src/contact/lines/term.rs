@@ -1,13 +1,14 @@
 //! The contact of lines with each other.
 
 use super::super::law::ContactLaw;
-use super::super::search::{Depth, gauss};
+use super::super::search::Depth;
 use super::curve::Curve;
 use super::facing::{Facing, Scratch};
 use super::friction::{CELLS, Rubs};
 use super::near::Near;
 use super::pieces::{APART, Piece, Pieces};
 use super::push::{Pressed, Push, Sum};
+use crate::gauss::gauss;
 use ropewalk_core::error::{need, positive};
 use ropewalk_core::{
     Assembly, At, BuildError, Column, ContactSpan, Couples, Energy, Foresees, Pattern, Power, Relaxed,
