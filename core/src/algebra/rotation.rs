@@ -58,6 +58,28 @@ pub fn product(a: &M3, b: &M3) -> M3 {
     a.map(|row| transposed_times(b, &row))
 }
 
+/// The rate of a rotation vector `θ`, by less than a whole turn, in a motion with angular velocity `ω` in the body's own
+/// axes: `ω + ½ θ×ω + c θ×(θ×ω)` with `c = (1 - ½φ cot ½φ)/φ²` (Iserles, Munthe-Kaas, Nørsett & Zanna 2000, the inverse
+/// of "dexp").
+///
+/// ```
+/// use ropewalk_core::rotation::vector_rate;
+/// // about the axis that it turns about already
+/// assert_eq!(vector_rate(&[0.0, 0.0, 1.0], &[0.0, 0.0, 2.0]), [0.0, 0.0, 2.0]);
+/// ```
+pub fn vector_rate(theta: &V3<f64>, omega: &V3<f64>) -> V3<f64> {
+    let square = along(theta, theta);
+    let angle = square.sqrt();
+    let c = if angle < 1e-2 {
+        1.0 / 12.0 + square / 720.0
+    } else {
+        (1.0 - 0.5 * angle / (0.5 * angle).tan()) / square
+    };
+    let once = cross(theta, omega);
+    let twice = cross(theta, &once);
+    std::array::from_fn(|i| omega[i] + 0.5 * once[i] + c * twice[i])
+}
+
 /// The rotation matrix of a unit quaternion, over any carrier.
 #[inline(always)]
 pub fn matrix<T>(q: &[T; 4]) -> M3<T>

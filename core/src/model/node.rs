@@ -3,8 +3,7 @@
 //! Integrators and Newton's method work with velocities and increments, which are plain vectors; only a node
 //! knows that an orientation isn't one. `q ⊕ Δ` is [`NodeKind::retract`].
 
-use crate::algebra::lane::V3;
-use crate::algebra::rotation::{cross, exp, log, then};
+use crate::algebra::rotation::{cross, exp, log, then, vector_rate};
 use crate::model::twist;
 
 /// What a node carries.
@@ -128,35 +127,24 @@ impl NodeKind {
             let [d, v, a] = [d, v, a].map(|x| [x[3], x[4], x[5]]);
             let square = d.iter().map(|x| x * x).sum::<f64>();
             let angle = square.sqrt();
-            // ω = ḋ - A d×ḋ + B d×(d×ḋ); C of its inverse, and Ȧ and Ḃ per d·ḋ
-            let [b, c, a_dot, b_dot] = if angle < 1e-2 {
-                [
-                    1.0 / 6.0 - square / 120.0,
-                    1.0 / 12.0 + square / 720.0,
-                    -1.0 / 12.0 + square / 180.0,
-                    -1.0 / 60.0 + square / 1260.0,
-                ]
+            // ω = ḋ - A d×ḋ + B d×(d×ḋ), and Ȧ and Ḃ per d·ḋ
+            let [b, a_dot, b_dot] = if angle < 1e-2 {
+                [1.0 / 6.0 - square / 120.0, -1.0 / 12.0 + square / 180.0, -1.0 / 60.0 + square / 1260.0]
             } else {
                 let (sin, cos) = angle.sin_cos();
                 [
                     (angle - sin) / (square * angle),
-                    (1.0 - 0.5 * angle / (0.5 * angle).tan()) / square,
                     (angle * sin - 2.0 * (1.0 - cos)) / (square * square),
                     (3.0 * sin - angle * (2.0 + cos)) / (square * square * angle),
                 ]
             };
-            let back = |x: V3<f64>| -> V3<f64> {
-                let once = cross(&d, &x);
-                let twice = cross(&d, &once);
-                std::array::from_fn(|i| x[i] + 0.5 * once[i] + c * twice[i])
-            };
-            let rate = back(v);
+            let rate = vector_rate(&d, &v);
             let along: f64 = (0..3).map(|i| d[i] * rate[i]).sum();
             let once = cross(&d, &rate);
             let (twice, mixed) = (cross(&d, &once), cross(&rate, &once));
             let bent = |i: usize| along * (b_dot * twice[i] - a_dot * once[i]) + b * mixed[i];
             first[3..6].copy_from_slice(&rate);
-            second[3..6].copy_from_slice(&back(std::array::from_fn(|i| a[i] - bent(i))));
+            second[3..6].copy_from_slice(&vector_rate(&d, &std::array::from_fn(|i| a[i] - bent(i))));
         }
     }
 

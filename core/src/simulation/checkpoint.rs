@@ -176,6 +176,7 @@ impl Simulation {
             scratch,
             aside: None,
             aside_of: 0,
+            mended: None,
             sampled: c.sampled,
             memory: c.memory,
             jumped: c.jumped,

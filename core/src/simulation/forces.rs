@@ -5,6 +5,7 @@
 //! done aside has a workspace of its own: looking at a run doesn't change it.
 
 use super::Simulation;
+use super::difference::Difference;
 use crate::model::node::retract;
 use crate::model::state::State;
 use crate::model::term::Weights;
@@ -15,6 +16,9 @@ use crate::solve::integrator::{
 use crate::solve::linear::SolveError;
 use crate::solve::times::Phase;
 
+/// By how much at most what an interpolation is off by has grown where it serves at another time of the step: what is found
+/// in soft directions is where the search began.
+const MOST_GROWN: f64 = 0.05;
 /// What an interpolated state may leave of the equations of motion, in parts of the tolerance of forces …
 const BALANCED: f64 = 0.1;
 /// … and what is left of them once it has been moved.
@@ -23,8 +27,8 @@ const FINE: f64 = 1e-2;
 const FAST: f64 = 0.03;
 /// What may be left, in parts of the forces at work, for the matrix of another state to lead on from there.
 const NEAR: f64 = 0.03;
-/// Iterations that should do for that.
-const MOST_ITERATIONS: usize = 10;
+/// Iterations that do for that, also between the ends of a step of seconds.
+const MOST_ITERATIONS: usize = 30;
 
 impl Simulation {
     /// Gives the scratch state, which lies inside the last step or at its end, the forces of the motion.
@@ -72,14 +76,35 @@ impl Simulation {
         let begin = self.work.clocks.start();
         let mut aside = self.take_aside()?;
         let start = self.scratch.clone();
+        self.mend();
         let there = self.balance(weights, forces, &mut aside)
             && (!forces || self.find_accelerations(&mut aside).is_ok());
         if !there {
             self.scratch = start;
+        } else if self.scratch.t < self.state.t {
+            let mended = Difference::between(self.model.nodes(), &start, &self.scratch);
+            self.mended = Some((self.work.counts.steps, self.scratch.t, mended));
         }
         self.aside = Some(aside);
         self.work.clocks.stop(Phase::Output, begin);
         Ok(there)
+    }
+
+    /// Begins with what the interpolation was off by nearby in the same step, if that was looked at before, as where the time
+    /// of an event is searched for: it grows from the ends of the step inwards.
+    fn mend(&mut self) {
+        let (begin, h) = (self.previous.t, self.state.t - self.previous.t);
+        let Some((step, t, mended)) = &self.mended else { return };
+        if *step != self.work.counts.steps || !(self.scratch.t < self.state.t) {
+            return;
+        }
+        let shape = |t: f64| (t - begin) * (begin + h - t);
+        let grown = shape(self.scratch.t) / shape(*t);
+        if !((grown - 1.0).abs() <= MOST_GROWN) {
+            return;
+        }
+        let start = self.scratch.clone();
+        mended.put(self.model.nodes(), grown * grown, &start, &mut self.scratch);
     }
 
     /// Moves the scratch state into balance as Newton's method would at the end of a step like the last one: stiff
@@ -95,7 +120,7 @@ impl Simulation {
         // the end of a step is as balanced as it is
         let inside = self.scratch.t < self.state.t;
         let (model, work, s) = (&*self.model, &mut self.work, &mut self.scratch);
-        let (nv, start) = (model.velocities(), s.q.clone());
+        let nv = model.velocities();
         let mut d = vec![0.0; nv];
         // the matrix of the last step serves until it doesn't, then those of the states here, also at other times of the step
         if self.aside_of != work.counts.steps || aside.factored != Some(weights) {
@@ -103,7 +128,7 @@ impl Simulation {
         }
         let (mut own, mut renew, mut before) = (aside.factored.is_some(), false, f64::INFINITY);
         // from where a matrix serves once more, and how far that is; whether one may
-        let (mut from, mut again): (Option<(State, Vec<f64>)>, _) = (None, true);
+        let (mut from, mut again): (Option<State>, _) = (None, true);
         let mut goal = None;
         for k in 0..MOST_ITERATIONS {
             let factors = if own && aside.factored.is_some() { &mut *aside } else { &mut *work };
@@ -128,10 +153,10 @@ impl Simulation {
                 return true;
             }
             if !(left <= before)
-                && let Some((state, way)) = from.take()
+                && let Some(state) = from.take()
             {
                 // it didn't
-                (*s, d) = (state, way);
+                *s = state;
                 (own, renew, before, again) = (true, true, f64::INFINITY, false);
                 continue;
             }
@@ -146,7 +171,7 @@ impl Simulation {
                 (own, renew, from) = (true, true, None);
                 continue;
             }
-            from = (!renew).then(|| (s.clone(), d.clone()));
+            from = (!renew).then(|| s.clone());
             before = left;
             let mut x: Vec<f64> = residual.iter().map(|r| -r).collect();
             x[nv..].iter_mut().for_each(|x| *x /= weights.q);
@@ -158,12 +183,12 @@ impl Simulation {
                 break;
             }
             for i in 0..nv {
-                d[i] += weights.q * x[i];
+                d[i] = weights.q * x[i];
                 s.v[i] += weights.v * x[i];
                 s.a[i] += weights.a * x[i];
             }
             s.lambda.iter_mut().zip(&x[nv..]).for_each(|(l, x)| *l += x);
-            retract(model.nodes(), &start, &d, &mut s.q);
+            retract(model.nodes(), &s.q.clone(), &d, &mut s.q);
             model.drive(s.t, &s.internal, &mut s.q, &mut s.v, &mut s.a);
             renew = own && !(again && fast);
         }

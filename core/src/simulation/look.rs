@@ -7,10 +7,11 @@
 //! tolerance for forces to be within theirs.
 
 use super::Simulation;
+use super::difference::Difference;
 use super::memory::Remembers;
 use super::uneven::Uneven;
 use super::watch::{Rounded, Rung};
-use crate::model::node::{Node, difference, retract};
+use crate::model::node::difference;
 use crate::model::state::State;
 use crate::simulation::audit::Audit;
 use crate::solve::integrator::{Options, StepError, Stepping, Workspace};
@@ -36,8 +37,9 @@ const FORGOTTEN: f64 = 0.02;
 const ADDS: f64 = 0.05;
 /// Most steps of a copy, in parts of those that a measurement is allowed: where they shrink it isn't worth them.
 const DEAR: u64 = 4;
-/// What is left of one that won't be, after half of all steps.
+/// What is left of one that won't be, after half of all steps and no fewer than these.
 const LASTING: f64 = 0.5;
+const LAST: u64 = 4 * FEWEST;
 /// A difference below this is the noise of the iteration [1].
 const NOISE: f64 = 1e-7;
 /// A part whose difference is below this share of the largest doesn't count.
@@ -111,32 +113,6 @@ impl Fading {
     }
 }
 
-/// What two states differ by.
-struct Difference {
-    q: Vec<f64>,
-    /// Of velocities, accelerations, and what the scheme keeps beside them.
-    rates: [Vec<f64>; 3],
-}
-
-impl Difference {
-    fn between(nodes: &[Node], a: &State, b: &State) -> Self {
-        let mut q = vec![0.0; a.v.len()];
-        difference(nodes, &a.q, &b.q, &mut q);
-        let less = |a: &[f64], b: &[f64]| b.iter().zip(a).map(|(b, a)| b - a).collect();
-        Difference { q, rates: [less(&a.v, &b.v), less(&a.a, &b.a), less(&a.aux, &b.aux)] }
-    }
-
-    /// Makes the second state differ from the first by so many times this.
-    fn put(&self, nodes: &[Node], factor: f64, a: &State, b: &mut State) {
-        let scaled: Vec<f64> = self.q.iter().map(|d| factor * d).collect();
-        retract(nodes, &a.q, &scaled, &mut b.q);
-        let pairs = [(&a.v, &mut b.v), (&a.a, &mut b.a), (&a.aux, &mut b.aux)];
-        for ((a, b), d) in pairs.into_iter().zip(&self.rates) {
-            b.iter_mut().zip(a).zip(d).for_each(|((b, a), d)| *b = a + factor * d);
-        }
-    }
-}
-
 impl Simulation {
     /// Measures how long the motion from here remembers an error, with at most so many steps.
     pub(super) fn measure_memory(&self, most: u64) -> Remembers {
@@ -197,7 +173,7 @@ impl Simulation {
             if moved().any(|p| !self.memory.would_help(p.sum / p.most)) {
                 break;
             }
-            if k == most / 2 && counts().any(|p| !(p.last < LASTING * p.most)) {
+            if k == (most / 2).max(KICK + LAST) && counts().any(|p| !(p.last < LASTING * p.most)) {
                 return Ok(Remembers::Always);
             }
             if now >= end {
@@ -289,6 +265,7 @@ impl Simulation {
             events: Vec::new(),
             aside: None,
             aside_of: 0,
+            mended: None,
             sampled: (0.0, 0),
             memory: self.memory.clone(),
             jumped: false,

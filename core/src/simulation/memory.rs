@@ -14,14 +14,21 @@ const NOTHING: f64 = 1e-2;
 const LEAST: f64 = 1e-3;
 /// Steps after which memory is first measured: the start lies behind.
 const FIRST: u64 = 64;
-/// How many times as many steps later it is measured again, where errors were forgotten and where they were not.
-const AGAIN: [u64; 2] = [4, 32];
-/// Steps that a run takes at least in which measuring pays.
+/// How many times as many steps later it is measured again: where errors were forgotten; where they weren't; and where it
+/// couldn't be measured.
+const AGAIN: [u64; 3] = [4, 8, 32];
+/// How many times shorter steps have become where the motion is another, as that of a hose that sank and is towed: what
+/// was seen of errors that weren't forgotten is soon looked at anew.
+const OTHER: f64 = 2.0;
+const SOONER: u64 = 2;
+/// Steps that a run has ahead at least in which measuring pays.
 const WORTH: f64 = 1000.0;
-/// Steps of a measurement, in parts of those of the run.
+/// Steps of a measurement, in parts of those ahead.
 const SHARE: f64 = 1.0 / 40.0;
-/// Between which parts of the run it is measured.
-const BETWEEN: [f64; 2] = [0.02, 0.5];
+/// From which part of the run on it is measured.
+const EARLIEST: f64 = 0.02;
+/// Steps over which their mean length tells how many are ahead.
+const LATEST: u64 = 32;
 /// Over how many times the time that the motion remembers errors are taken to add up.
 const SAFE: f64 = 3.0;
 
@@ -42,6 +49,8 @@ pub(super) struct Memory {
     forgets: Option<f64>,
     /// Steps of the run at which that is measured next.
     next: u64,
+    /// Mean length of the latest steps [s], now and when it was last measured.
+    pace: [f64; 2],
 }
 
 /// How a motion treats an error.
@@ -58,7 +67,7 @@ pub(super) enum Remembers {
 impl Memory {
     /// Of a run of this length from time `began` [s].
     pub fn new(began: f64, whole: f64) -> Self {
-        Memory { began, whole, rest: 0.0, forgets: None, next: FIRST }
+        Memory { began, whole, rest: 0.0, forgets: None, next: FIRST, pace: [0.0; 2] }
     }
 
     /// The horizon of error control [s].
@@ -82,24 +91,35 @@ impl Memory {
         self.forgets.is_some()
     }
 
-    /// Steps that a measurement may take now: none if it isn't worth one.
+    /// Takes note of a step: how long it was [s], its error in parts of what it may be, and which one it is.
+    fn pass(&mut self, h: f64, error: f64, steps: u64) {
+        if error < NOTHING {
+            self.rest += h;
+        }
+        self.pace[0] += (h - self.pace[0]) / steps.clamp(1, LATEST) as f64;
+    }
+
+    /// Steps that a measurement may take now: none if it isn't worth one, as where most of the run lies behind.
     fn due(&self, t: f64, steps: u64) -> Option<u64> {
-        let past = t - self.began;
-        let expected = steps as f64 * self.whole / past;
-        let midst = past >= BETWEEN[0] * self.whole && past <= BETWEEN[1] * self.whole;
-        let due = steps >= self.next && expected >= WORTH && midst;
-        due.then_some((SHARE * expected) as u64)
+        let ahead = (self.end() - t) / self.pace[0];
+        let begun = t - self.began >= EARLIEST * self.whole;
+        let other = self.forgets.is_none() && OTHER * self.pace[0] < self.pace[1];
+        let next = if other { self.next / SOONER } else { self.next };
+        let due = steps >= next && begun && ahead >= WORTH.max(steps as f64);
+        due.then_some((SHARE * ahead) as u64)
     }
 
     /// Notes what was measured after so many steps.
     fn note(&mut self, found: Remembers, steps: u64) {
+        self.pace[1] = self.pace[0];
         (self.forgets, self.next) = match found {
             Remembers::For(memory) => (Some(memory), AGAIN[0] * steps),
             // a look that was too short to see what was seen before says nothing against it
             Remembers::Longer(looked) => {
-                (self.forgets.filter(|memory| looked < SEEN * memory), AGAIN[1] * steps)
+                let again = if looked > 0.0 { AGAIN[1] } else { AGAIN[2] };
+                (self.forgets.filter(|memory| looked < SEEN * memory), again * steps)
             }
-            Remembers::Always => (None, u64::MAX),
+            Remembers::Always => (None, AGAIN[1] * steps),
         };
     }
 }
@@ -112,10 +132,8 @@ impl Simulation {
         if !chosen {
             return;
         }
-        if report.error < NOTHING {
-            self.memory.rest += report.h;
-        }
         let steps = self.work.counts.steps;
+        self.memory.pass(report.h, report.error, steps);
         if let Some(most) = self.memory.due(self.state.t, steps) {
             let found = self.measure_memory(most);
             self.memory.note(found, steps);

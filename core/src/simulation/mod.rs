@@ -4,6 +4,7 @@ mod ahead;
 pub mod audit;
 mod checkpoint;
 mod dense;
+mod difference;
 mod events;
 mod forces;
 mod inputs;
@@ -33,6 +34,7 @@ use crate::solve::integrator::{
     Correction, Integrator, Limit, Options, StepError, StepReport, Stepping, Workspace, prepare,
 };
 use crate::solve::times::Phase;
+use difference::Difference;
 use events::at_start;
 use inputs::Controlling;
 use memory::Memory;
@@ -155,6 +157,8 @@ pub struct Simulation {
     aside: Option<Box<Workspace>>,
     /// The step, counted, that it has a matrix of.
     aside_of: u64,
+    /// What an interpolation in a step, counted, was off by at a time, and that time.
+    mended: Option<(u64, f64, Difference)>,
     /// Time at which the present advance began, and the number of its next sample.
     sampled: (f64, u64),
     /// Over which time errors add up.
@@ -222,6 +226,7 @@ impl Simulation {
             scratch,
             aside: None,
             aside_of: 0,
+            mended: None,
             sampled: (0.0, 0),
             memory,
             jumped: false,

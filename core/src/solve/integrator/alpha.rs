@@ -337,8 +337,9 @@ impl Alpha {
                 let turn = model.turn(&work.trial.d);
                 let [local, force] =
                     self.error(model, state, work, h).map_err(|source| linear(model, state.t, source))?;
-                // errors of positions add up, per unit step; stiff directions follow what moves them, and forget
-                let position = local * (self.horizon / h) / tolerance;
+                // errors of positions add up, per unit step, none by itself above all of them; stiff directions follow what
+                // moves them, and forget
+                let position = local * (self.horizon / h).max(1.0) / tolerance;
                 let error = larger(position, force);
                 let by = if force > position { Limit::Force } else { Limit::Position };
                 // a body that is driven has no error, but a larger turn may end on another branch of its joint

@@ -11,7 +11,9 @@ use super::options::NewtonPolicy;
 use super::scales::{Stopping, Units};
 use super::scheme::Coefficients;
 use super::workspace::{Trial, Which, Workspace};
+use crate::algebra::rotation::{along, vector_rate};
 use crate::model::Model;
+use crate::model::node::NodeKind;
 use crate::model::state::{At, State};
 use crate::model::term::{Leap, Weights};
 use crate::solve::linear::SolveError;
@@ -20,6 +22,11 @@ use crate::solve::redundancy::Softening;
 /// Iterations of a careful start. Next to a singular position a prediction off by `e` asks for a correction of `e` over
 /// the distance, which may lead beyond the other branch; once the well determined directions are right, little is left.
 const CAREFUL: u32 = 3;
+
+/// The square of half a turn.
+const HALF_TURN: f64 = std::f64::consts::PI * std::f64::consts::PI;
+/// A correction by so many lengths of a part leads nowhere: from there on numbers only grow.
+const FAR: f64 = 1e6;
 
 /// Largest expected rest of the error that is believed without a second iteration. What is expected grows from step to
 /// step that has only one.
@@ -298,17 +305,30 @@ impl Newton<'_> {
             }
         }
         work.solve_ordered(self.model, Which::Iteration)?;
-        s.add_restored(&work.x, &mut work.trial.aux, &mut work.trial.lambda);
         let beta_h2 = self.scheme.beta.max(1.0 / 12.0) * self.h * self.h;
         let mut size = beta_h2 * work.norms.relative_ordered(&work.x);
+        self.undo(work);
+        s.add_restored(&work.x, &mut work.trial.aux, &mut work.trial.lambda);
         if self.stabilised {
             size += self.shift(work, multiplier_scale)?;
         }
         self.kinematics(work);
-        if size.is_finite() {
-            Ok(size)
-        } else {
-            Err(Failure::newton("the iteration left the finite numbers"))
+        // a NaN is far too
+        if size <= FAR { Ok(size) } else { Err(Failure::newton("Newton's method runs away")) }
+    }
+
+    /// Turns corrections of orientations, which the matrix is made for, into those of the increment since the start of the
+    /// step: undoes [`NodeKind::velocity`]. Without it an iteration would leave as much as half of what bodies turn by in
+    /// the step, however fresh its matrix.
+    fn undo(&self, work: &mut Workspace) {
+        let s = self.model.structure();
+        for node in self.model.nodes().iter().filter(|node| node.kind == NodeKind::Frame) {
+            let turned = std::array::from_fn(|i| work.trial.d[node.v + 3 + i]);
+            let p: [usize; 3] = std::array::from_fn(|i| s.position[node.v + 3 + i]);
+            if along(&turned, &turned) < HALF_TURN {
+                let rate = vector_rate(&turned, &p.map(|p| work.x[p]));
+                p.iter().zip(rate).for_each(|(&p, x)| work.x[p] = x);
+            }
         }
     }
 
@@ -364,10 +384,12 @@ impl Newton<'_> {
         }
         work.solve_ordered(self.model, Which::Iteration)?;
         let scale = 1.0 / multiplier_scale;
+        let size = scale * work.norms.relative_ordered(&work.x);
+        self.undo(work);
         for (shift, &p) in work.trial.shift.iter_mut().zip(&s.position[..nv]) {
             *shift += scale * work.x[p];
         }
-        Ok(scale * work.norms.relative_ordered(&work.x))
+        Ok(size)
     }
 
     fn constraints_hold(&self, work: &mut Workspace) -> bool {
