@@ -39,7 +39,7 @@ const ADDS: f64 = 0.05;
 const DEAR: u64 = 4;
 /// What is left of one that won't be, after half of all steps and no fewer than these.
 const LASTING: f64 = 0.5;
-const LAST: u64 = 4 * FEWEST;
+const LAST: u64 = 2 * FEWEST;
 /// A difference below this is the noise of the iteration [1].
 const NOISE: f64 = 1e-7;
 /// A part whose difference is below this share of the largest doesn't count.
@@ -129,12 +129,20 @@ impl Simulation {
         let mut parts = vec![Fading::default(); self.work.norms.groups.len()];
         let mut tension = Fading::default();
         let (mut begun, mut off) = (self.state.t, Vec::new());
+        // steps of a copy may be as many as it was allowed, and yet dearer than those of the run
+        let counts = &self.work.counts;
+        let each = counts.newton_iterations as f64 / counts.steps as f64;
+        let dearest = (2.0 * each * most as f64) as u64;
         let least = SMALL_TENSION * self.integrator.options().force_tolerance;
         for k in 0..most {
             let (t, steps, dear) = (plain.state.t, halved.work.counts.steps, DEAR * most);
             let before = Difference::between(nodes, &plain.state, &halved.state);
             plain.step(end)?;
             let now = plain.state.t;
+            let iterations = [&plain, &halved].map(|copy| copy.work.counts.newton_iterations);
+            if iterations[0] + iterations[1] > dearest {
+                break;
+            }
             let there = (k >= KICK || halved.go_to(0.5 * (t + now), dear)?) && halved.go_to(now, dear)?;
             if !there || plain.tries() > dear {
                 break;
