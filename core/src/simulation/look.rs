@@ -37,6 +37,8 @@ const FORGOTTEN: f64 = 0.02;
 const ADDS: f64 = 0.05;
 /// Most steps of a copy, in parts of those that a measurement is allowed: where they shrink it isn't worth them.
 const DEAR: u64 = 4;
+/// Iterations of both copies, in parts of those of as many steps of the run as a measurement is allowed.
+const DEAREST: f64 = 3.0;
 /// What is left of one that won't be, after half of all steps and no fewer than these.
 const LASTING: f64 = 0.5;
 const LAST: u64 = 2 * FEWEST;
@@ -120,6 +122,11 @@ impl Simulation {
         if !self.model.inputs().is_empty() || !self.model.controls().is_empty() {
             return Remembers::Always;
         }
+        // where nothing takes energy away, what is seen to fade comes back: volumes of phase space stay (Liouville)
+        let power = self.model.power(&self.state.at(), &self.state.lambda);
+        if power.dissipated == 0.0 && power.carried == 0.0 {
+            return Remembers::Always;
+        }
         self.watch_fading(most).unwrap_or(Remembers::Longer(0.0))
     }
 
@@ -129,10 +136,9 @@ impl Simulation {
         let mut parts = vec![Fading::default(); self.work.norms.groups.len()];
         let mut tension = Fading::default();
         let (mut begun, mut off) = (self.state.t, Vec::new());
-        // steps of a copy may be as many as it was allowed, and yet dearer than those of the run
         let counts = &self.work.counts;
         let each = counts.newton_iterations as f64 / counts.steps as f64;
-        let dearest = (2.0 * each * most as f64) as u64;
+        let dearest = (DEAREST * each * most as f64) as u64;
         let least = SMALL_TENSION * self.integrator.options().force_tolerance;
         for k in 0..most {
             let (t, steps, dear) = (plain.state.t, halved.work.counts.steps, DEAR * most);

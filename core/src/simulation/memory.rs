@@ -24,7 +24,7 @@ const SOONER: u64 = 2;
 /// Steps that a run has ahead at least in which measuring pays.
 const WORTH: f64 = 1000.0;
 /// Steps of a measurement, in parts of those ahead.
-const SHARE: f64 = 1.0 / 60.0;
+const SHARE: f64 = 1.0 / 40.0;
 /// From which part of the run on it is measured.
 const EARLIEST: f64 = 0.02;
 /// Steps over which their mean length tells how many are ahead.
