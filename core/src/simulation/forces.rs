@@ -139,7 +139,7 @@ impl Simulation {
                 return true;
             }
             goal = goal.or(Some(moved.goal));
-            model.assemble(&s.at(), &s.lambda, renew.then_some(weights), &mut aside.system);
+            model.assemble(&s.at(), &s.lambda, None, &mut aside.system);
             let residual = &aside.system.residual;
             let mut left = |tolerance| work.forces.ratio(&work.norms, residual, &s.a, &s.lambda, tolerance);
             let good = k == 0 && (!inside || left(BALANCED * tolerance) <= 1.0);
@@ -167,16 +167,17 @@ impl Simulation {
                 // or two more of its iterations will do
                 !far(before) && (left < FAST * before || left.powi(3) < before.powi(2))
             };
-            if !renew && !fast {
-                (own, renew, from) = (true, true, None);
-                continue;
-            }
-            from = (!renew).then(|| s.clone());
             before = left;
             let mut x: Vec<f64> = residual.iter().map(|r| -r).collect();
             x[nv..].iter_mut().for_each(|x| *x /= weights.q);
-            if renew && aside.factor(model, weights).is_err() {
-                break;
+            if renew || !fast {
+                (own, from) = (true, None);
+                model.assemble(&s.at(), &s.lambda, Some(weights), &mut aside.system);
+                if aside.factor(model, weights).is_err() {
+                    break;
+                }
+            } else {
+                from = Some(s.clone());
             }
             let factors = if own { &mut *aside } else { &mut *work };
             if factors.solve_iteration(model, &mut x).is_err() {

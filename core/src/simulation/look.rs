@@ -11,6 +11,7 @@ use super::difference::Difference;
 use super::memory::Remembers;
 use super::uneven::Uneven;
 use super::watch::{Rounded, Rung};
+use crate::model::event::Depends;
 use crate::model::node::difference;
 use crate::model::state::State;
 use crate::simulation::audit::Audit;
@@ -120,6 +121,10 @@ impl Simulation {
     pub(super) fn measure_memory(&self, most: u64) -> Remembers {
         // what is steered from outside can't be looked ahead of
         if !self.model.inputs().is_empty() || !self.model.controls().is_empty() {
+            return Remembers::Always;
+        }
+        // what lets go at a load does so earlier or later by any error, and isn't taken back
+        if self.events.iter().any(|(event, _)| event.depends() != Depends::OnMotion) {
             return Remembers::Always;
         }
         // where nothing takes energy away, what is seen to fade comes back: volumes of phase space stay (Liouville)
