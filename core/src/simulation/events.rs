@@ -162,6 +162,8 @@ impl Simulation {
                 continue;
             }
             std::mem::swap(&mut self.state, &mut self.scratch);
+            // a shorter step has another interpolation
+            self.mended = None;
             return Some(Fired { event, action, after, changed });
         }
         self.model.remember(&mut self.state);
