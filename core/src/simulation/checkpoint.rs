@@ -96,6 +96,7 @@ impl Simulation {
     pub fn checkpoint(&mut self) -> Result<Checkpoint, StepError> {
         self.recouple(true)?;
         self.work.renew(&self.model).map_err(|e| no_memory(self.state.t, e))?;
+        (self.aside, self.mended) = (None, None);
         Ok(Checkpoint {
             state: self.state.clone(),
             audit: self.audit,

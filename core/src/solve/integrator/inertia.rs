@@ -17,6 +17,8 @@ const CHANGED: [f64; 2] = [0.02, 0.1];
 /// A mass matrix, in the order of [`Structure`](crate::model::structure::Structure).
 pub(crate) struct Inertia {
     values: Vec<f64>,
+    /// The how manieth it is.
+    made: u64,
     /// Steps that it has served, and that it is to serve.
     served: u32,
     serves: u32,
@@ -24,7 +26,7 @@ pub(crate) struct Inertia {
 
 impl Default for Inertia {
     fn default() -> Self {
-        Inertia { values: Vec::new(), served: 0, serves: SERVES[0] }
+        Inertia { values: Vec::new(), made: 0, served: 0, serves: SERVES[0] }
     }
 }
 
@@ -33,12 +35,18 @@ impl Inertia {
     pub fn take(&mut self, values: &[f64]) {
         self.values.clear();
         self.values.extend_from_slice(values);
+        self.made += 1;
         self.served = 0;
     }
 
     /// Its entries; none before the first step.
     pub fn values(&self) -> &[f64] {
         &self.values
+    }
+
+    /// Which one it is of those that this workspace has had.
+    pub fn made(&self) -> u64 {
+        self.made
     }
 
     /// Lets the next step make it anew.

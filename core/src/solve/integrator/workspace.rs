@@ -58,6 +58,8 @@ pub struct Workspace {
     pub(crate) mass_solver: Guard,
     /// The matrix that `mass_solver` has factored.
     mass_factored: Vec<f64>,
+    /// Of which inertia of another workspace `mass` and its factors are, if they are.
+    taken: Option<u64>,
     /// What errors are estimated with.
     pub(crate) inertia: Inertia,
     /// Whether `mass.values` holds the mass matrix of the start, for norms.
@@ -130,6 +132,7 @@ impl Workspace {
             mass: System::default(),
             mass_solver: Guard::new(s)?,
             mass_factored: Vec::new(),
+            taken: None,
             inertia: Inertia::default(),
             has_mass: false,
             norms: Norms::default(),
@@ -356,6 +359,7 @@ impl Workspace {
         stiff: f64,
         factor: bool,
     ) -> Result<(), SolveError> {
+        self.taken = None;
         model.assemble_matrix(at, lambda, Weights { q: stiff, v: 0.0, a: 1.0 }, &mut self.mass);
         self.has_mass = stiff == 0.0;
         if let (true, Some(softening)) = (factor, &self.softening) {
@@ -386,11 +390,14 @@ impl Workspace {
         if values.is_empty() || self.softening.is_some() || !model.keeps_constraints() {
             return Ok(false);
         }
-        if self.mass.values != values {
+        if self.taken != Some(of.inertia.made()) {
+            self.taken = None;
             self.mass.values.clear();
             self.mass.values.extend_from_slice(values);
+            self.factor_mass(model)?;
+            self.taken = Some(of.inertia.made());
         }
-        self.factor_mass(model).map(|()| true)
+        Ok(true)
     }
 
     /// Sets `y` to the product of a matrix and a vector of velocities, in elimination order.
