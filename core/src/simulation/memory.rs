@@ -12,19 +12,20 @@ use crate::solve::integrator::{StepReport, Stepping};
 const NOTHING: f64 = 1e-2;
 /// Least part of the run that errors are taken to add up over.
 const LEAST: f64 = 1e-3;
-/// Steps after which memory is first measured: the start lies behind.
-const FIRST: u64 = 64;
+/// Steps after which memory is first measured: the start lies behind, and measuring costs little beside what was spent.
+const FIRST: u64 = 1000;
 /// How many times as many steps later it is measured again: where errors were forgotten; where they weren't; and where it
 /// couldn't be measured.
-const AGAIN: [u64; 3] = [4, 8, 32];
+const AGAIN: [u64; 3] = [4, 3, 32];
 /// How many times shorter steps have become where the motion is another, as that of a hose that sank and is towed: what
 /// was seen of errors that weren't forgotten is soon looked at anew.
 const OTHER: f64 = 2.0;
 const SOONER: u64 = 2;
 /// Steps that a run has ahead at least in which measuring pays.
 const WORTH: f64 = 1000.0;
-/// Steps of a measurement, in parts of those ahead.
-const SHARE: f64 = 1.0 / 40.0;
+/// Steps of a measurement, in parts of those ahead, and at most of those taken: how many are ahead may be far fewer than the
+/// latest let one expect.
+const SHARE: [f64; 2] = [1.0 / 40.0, 0.1];
 /// From which part of the run on it is measured.
 const EARLIEST: f64 = 0.02;
 /// Steps over which their mean length tells how many are ahead.
@@ -106,7 +107,7 @@ impl Memory {
         let other = self.forgets.is_none() && OTHER * self.pace[0] < self.pace[1];
         let next = if other { self.next / SOONER } else { self.next };
         let due = steps >= next && begun && ahead >= WORTH.max(steps as f64);
-        due.then_some((SHARE * ahead) as u64)
+        due.then_some((SHARE[0] * ahead).min(SHARE[1] * steps as f64) as u64)
     }
 
     /// Notes what was measured after so many steps.
