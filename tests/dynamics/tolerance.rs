@@ -181,33 +181,31 @@ fn umbilical() -> String {
 
 /// A weight on a cable of 50 m in water, let go to the side.
 fn weight() -> String {
+    "[water]\n".to_string()
+        + &weight_in_air(0.01).replace("mass = 20", "mass = 20\nvolume = 0.002\ndrag_area = 0.02")
+        + "[[forces]]\ntype = \"buoyancy\"\n[[forces]]\ntype = \"drag\"\n[[forces]]\ntype = \"added_mass\"\n"
+}
+
+/// The same in air, with axial damping of this retardation time [s].
+fn weight_in_air(time: f64) -> String {
     format!(
         r#"
-        [water]
         [[elements]]
         type = "cable"
         name = "c"
         points = [[0, 0, 0], [30, 0, -40]]
         elements = 20
-        section = {{ mass = 1, ea = 1e6, ei = 1, diameter = 0.02, axial_retardation_time = 0.01 }}
+        section = {{ mass = 1, ea = 1e6, ei = 1, diameter = 0.02, axial_retardation_time = {time} }}
         [[elements]]
         type = "point_mass"
         name = "w"
         marker = "c.end"
         mass = 20
-        volume = 0.002
-        drag_area = 0.02
         [[constraints]]
         type = "spherical"
         name = "top"
         marker = "c.start"
         {GRAVITY}
-        [[forces]]
-        type = "buoyancy"
-        [[forces]]
-        type = "drag"
-        [[forces]]
-        type = "added_mass"
         [[records]]
         type = "position"
         of = "w"
@@ -396,6 +394,46 @@ fn tension_that_swings_from_step_to_step_is_said_to() {
     };
     assert!(warned(&controlled(1e-3)) && warned("stepping = { fixed = { h = 0.5 } }\n"));
     assert!(!warned("") && !warned(SCHEMES[1]) && !warned("stepping = { fixed = { h = 0.02 } }\n"));
+}
+
+/// A weight swings on a cable in air: nothing damps the waves along it, and tension is off by more than its tolerance
+/// long before positions are. A run says so, and nothing of it where waves fade, where steps are short enough, or where
+/// another scheme follows them.
+#[test]
+fn tensions_that_errors_add_up_in_are_said_to_be_doubtful() {
+    let case = |name, text, duration| Case { name, text, duration, length: 1.0 };
+    let swings = case("weight in air", weight_in_air(0.0), 5.0);
+    let damped = case("the same, damped", weight_in_air(0.01), 5.0);
+    let stiff = case("stiff cable", pendulum(25_200.0, 1.701, 8), 1.0);
+    let exact =
+        |case: &Case| run(case, &(SCHEMES[1].to_string() + "force_tolerance = 1e-5\n" + &controlled(1e-8)));
+    for (case, tolerance, doubtful) in
+        [(&swings, 1e-4, true), (&stiff, 1e-3, true), (&stiff, 1e-5, false), (&damped, 1e-4, false)]
+    {
+        let got = run(case, &controlled(tolerance));
+        let said = got.summary().warnings.iter().any(|w| w.contains("nothing damps the waves along `c`"));
+        let [_, off] = apart(&got, &exact(case));
+        println!("{} at {tolerance:e}: forces off by {off:.1e}, said {said}", case.name);
+        assert_eq!(said, doubtful, "{} at {tolerance:e}: {:?}", case.name, got.summary().warnings);
+        // at most three times the tolerance, or said
+        assert!(if doubtful { off > 0.03 } else { off < 0.03 }, "{} at {tolerance:e}: {off:e}", case.name);
+    }
+    let said = |solver: &str| !run(&swings, solver).summary().warnings.is_empty();
+    assert!(!said(SCHEMES[1]), "Radau IIA follows the waves");
+}
+
+/// Where a tolerance of forces that is asked for isn't one of steps, a run says so.
+#[test]
+fn a_tolerance_of_forces_that_steps_are_not_held_to_is_said_to_be_one_of_iterations() {
+    let said = |case: &Case, solver: &str| {
+        run(case, solver).summary().warnings.iter().any(|w| w.contains("follows `tolerance`"))
+    };
+    let links = Case { name: "links", text: chain(3), duration: 0.1, length: 1.0 };
+    let cable = Case { name: "cable", text: pendulum(25_200.0, 1.701, 8), duration: 0.1, length: 1.2 };
+    let (usual, asked) = (controlled(1e-4), "force_tolerance = 1e-3\n".to_string() + &controlled(1e-4));
+    let radau = SCHEMES[1].to_string() + &asked;
+    assert!(said(&links, &asked) && said(&links, &radau) && said(&cable, &radau));
+    assert!(!said(&links, &usual) && !said(&cable, &asked) && !said(&cable, SCHEMES[1]));
 }
 
 /// A body that tumbles about its middle axis flips again and again: whatever an iteration leaves of its spin moves the next flip. A

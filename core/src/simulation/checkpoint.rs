@@ -3,8 +3,9 @@
 use super::Simulation;
 use super::inputs::Controlling;
 use super::memory::Memory;
+use super::tensions::{Rung, Summed};
 use super::uneven::Uneven;
-use super::watch::{Rounded, Rung};
+use super::watch::Rounded;
 use crate::model::Model;
 use crate::model::input::Course;
 use crate::model::remesh::Plan;
@@ -42,6 +43,8 @@ pub struct Checkpoint {
     created: Option<f64>,
     #[cfg_attr(feature = "serde", serde(default))]
     rung: Rung,
+    #[cfg_attr(feature = "serde", serde(default))]
+    summed: Summed,
     #[cfg_attr(feature = "serde", serde(default))]
     rounded: Rounded,
     #[cfg_attr(feature = "serde", serde(default))]
@@ -109,6 +112,7 @@ impl Simulation {
             change: self.change.clone(),
             created: self.created,
             rung: self.rung,
+            summed: self.summed.clone(),
             rounded: self.rounded,
             uneven: self.uneven.clone(),
             keep_audit: self.keep_audit,
@@ -166,6 +170,7 @@ impl Simulation {
             change: c.change,
             created: c.created,
             rung: c.rung,
+            summed: c.summed,
             rounded: c.rounded,
             uneven: c.uneven.clone(),
             keep_audit: c.keep_audit,

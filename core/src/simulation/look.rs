@@ -9,8 +9,9 @@
 use super::Simulation;
 use super::difference::Difference;
 use super::memory::Remembers;
+use super::tensions::{Rung, Summed};
 use super::uneven::Uneven;
-use super::watch::{Rounded, Rung};
+use super::watch::Rounded;
 use crate::model::event::Depends;
 use crate::model::node::difference;
 use crate::model::state::State;
@@ -244,7 +245,7 @@ impl Simulation {
     }
 
     fn strained(&self, state: &State, d: &[f64]) -> f64 {
-        self.work.forces.strained(&state.q, d, 1.0)
+        self.work.forces.strained(&state.q, d, 1.0).ratio
     }
 
     /// A copy that goes on from here by itself, with so many times the errors: nothing watches it, and it fires no events.
@@ -274,6 +275,7 @@ impl Simulation {
             ringing: 0.0,
             change: Vec::new(),
             rung: Rung::default(),
+            summed: Summed::default(),
             rounded: Rounded::default(),
             uneven: Uneven::default(),
             created: None,

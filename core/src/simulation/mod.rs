@@ -15,6 +15,7 @@ mod memory;
 pub mod record;
 pub mod shock;
 mod stepping;
+mod tensions;
 mod uneven;
 mod watch;
 
@@ -40,8 +41,9 @@ use inputs::Controlling;
 use memory::Memory;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use tensions::{Rung, Summed};
 use uneven::Uneven;
-use watch::{Rounded, Rung};
+use watch::Rounded;
 
 /// Sees every accepted step and every sample, read-only: recorders, progress bars.
 pub trait Observer {
@@ -141,6 +143,7 @@ pub struct Simulation {
     pub ringing: f64,
     change: Vec<f64>,
     rung: Rung,
+    summed: Summed,
     rounded: Rounded,
     uneven: Uneven,
     /// When energy was first seen to have appeared from nowhere [s].
@@ -214,6 +217,7 @@ impl Simulation {
             ringing: 0.0,
             change: Vec::new(),
             rung: Rung::default(),
+            summed: Summed::default(),
             rounded: Rounded::default(),
             uneven: Uneven::default(),
             created: None,
@@ -332,6 +336,7 @@ impl Simulation {
             let energy = self.watch_energy(end, observer);
             self.watch_steps(end, observer);
             self.watch_ringing(&report, end, observer);
+            self.watch_summed(&report, end, observer);
             self.watch_rounding(&report, end, observer);
             self.watch_ends(end, observer);
             self.measure_ringing();

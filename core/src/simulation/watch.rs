@@ -20,23 +20,8 @@ const BEGUN: u64 = 50;
 const BEGUN_TIME: f64 = 0.05;
 /// So many steps are worth a word.
 const MANY: u64 = 100_000;
-/// Steps in which tension rings that are worth a word, and their share of the time.
-const RUNG: u64 = 8;
-const RUNG_SHARE: f64 = 0.1;
 /// What has moved by no more than this since the run began, in parts of its own length, has no energy to speak of.
 const REST: f64 = 1e-7;
-
-/// Steps in which the tension of a cable swung to and fro from one to the next.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Rung {
-    steps: u64,
-    /// Their time [s], and when the first of them was [s].
-    time: f64,
-    first: f64,
-    /// The last cable in which it did.
-    part: usize,
-}
 
 /// What rounding has done to velocities.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -202,34 +187,6 @@ impl Simulation {
              fewer, and {damping} where fast motion that nothing damps asks for them",
             cause.word()
         ));
-    }
-
-    /// Warns at the end of a run in which tension has swung to and fro from step to step: the record shows the steps, not the
-    /// motion.
-    pub(super) fn watch_ringing(&mut self, report: &StepReport, end: f64, observer: &mut dyn Observer) {
-        let t = self.state.t;
-        if let Some(part) = report.rings {
-            let rung = &mut self.rung;
-            rung.first = if rung.steps == 0 { t } else { rung.first };
-            *rung = Rung { steps: rung.steps + 1, time: rung.time + report.h, part, ..*rung };
-        }
-        let Rung { steps, time, first, part } = self.rung;
-        if t < end || steps < RUNG || time < RUNG_SHARE * t {
-            return;
-        }
-        let remedy = match self.integrator.options().stepping {
-            Stepping::Fixed { .. } => "a smaller `h`",
-            Stepping::Controlled { .. } => "a smaller `tolerance`",
-        };
-        let name = self.model.parts().get(part).map_or("a cable", |p| p.name());
-        observer.warn(&format!(
-            "for {:.0} % of the time, first at t = {first:.4} s, the tension of `{name}` swings to and fro from step to step: waves \
-             along or across it that the steps don't resolve and the scheme hardly damps. Tensions between them mean little. Take {remedy}, \
-             `rho_inf = 0.5`, Radau IIA, or a little `axial_retardation_time` or `bending_retardation_time`",
-            100.0 * time / t
-        ));
-        // who advances bit by bit hears of it once
-        self.rung = Rung::default();
     }
 
     /// Warns at the end of a run whose steps were so short that rounding has moved it by more than the tolerance. Constraints fix

@@ -4,7 +4,7 @@ use super::recorder::Recorder;
 use super::scenery::Scenery;
 use super::summary::{Counts, CriticalLoad, Ending, ProfileEntry};
 use crate::error::{Error, caught};
-use ropewalk_core::integrator::{Limit, StepError, StepReport, Stepping};
+use ropewalk_core::integrator::{Limit, Options, Scheme, StepError, StepReport, Stepping};
 use ropewalk_core::statics::{Critical, Statics};
 use ropewalk_core::{
     Audit, Checkpoint, End, Model, Observer, Sample, Simulation, SolveError, State, Unfit, shock,
@@ -86,6 +86,19 @@ impl Started {
         Ok(Started::Dynamics(Box::new(simulation), flutter, remarks))
     }
 
+    /// The forces that error control doesn't hold to a tolerance of their own, where one is asked for.
+    fn uncontrolled_forces(&self, scene: &Scene) -> Option<&'static str> {
+        let (solver, usual) = (&scene.solver, Options::default().force_tolerance);
+        let asked = solver.force_tolerance < usual && matches!(solver.stepping, Stepping::Controlled { .. });
+        let Started::Dynamics(s, ..) = self else { return None };
+        match solver.scheme {
+            _ if !asked => None,
+            Scheme::RadauIia5 => Some("them with Radau IIA 5"),
+            _ if s.model.parts().iter().any(|part| part.slender().is_some()) => None,
+            _ => Some("reactions of bodies"),
+        }
+    }
+
     /// What one should know although the run goes on.
     pub(crate) fn warnings(&self, scene: &Scene) -> Vec<String> {
         let mut all = Vec::new();
@@ -104,6 +117,13 @@ impl Started {
                         r.names()
                     ));
                 }
+            }
+            if let Some(of) = self.uncontrolled_forces(scene) {
+                all.push(format!(
+                    "`force_tolerance = {:e}` is what iterations leave of forces here; what steps leave of {of} follows \
+                     `tolerance`. Take a smaller one and compare, or `run --certify`, which measures it",
+                    scene.solver.force_tolerance
+                ));
             }
             if let Stepping::Fixed { h } = scene.solver.stepping {
                 all.extend(s.faster_than(h, scene.run.duration).into_iter().map(|(name, t)| {

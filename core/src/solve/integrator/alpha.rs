@@ -3,7 +3,7 @@
 use super::adding::{left, left_like_dice, left_once};
 use super::controller::{StepController, StepLaw};
 use super::convergence::{Failure, Rate};
-use super::forces::larger;
+use super::forces::{Strained, larger};
 use super::newton::Newton;
 use super::options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping};
 use super::predictor::{Past, best_order};
@@ -170,14 +170,14 @@ impl Alpha {
     }
 
     /// Estimated error of the trial, relative to the part where it is largest: `|Cq h² (a₊ - a)|`, without what the
-    /// constraints and the numerical damping take away. With it by what tensions are off for it, over their tolerance.
+    /// constraints and the numerical damping take away. With it what tensions are off for it, over their tolerance.
     fn error(
         &self,
         model: &Model,
         state: &State,
         work: &mut Workspace,
         h: f64,
-    ) -> Result<[f64; 2], SolveError> {
+    ) -> Result<(f64, Strained), SolveError> {
         let factor = self.scheme.error_constant() * h * h;
         let (nv, mut e, mut rhs) =
             (model.velocities(), std::mem::take(&mut work.trial.d), std::mem::take(&mut work.trial.rhs));
@@ -200,7 +200,7 @@ impl Alpha {
         let strained = work.forces.strained(&work.trial.q, &rhs[..nv], self.options.force_tolerance);
         (work.trial.d, work.trial.rhs) = (e, rhs);
         solved?;
-        Ok([size, strained])
+        Ok((size, strained))
     }
 
     /// Predicts and iterates a step `h`, and judges what comes of it.
@@ -324,7 +324,7 @@ impl Alpha {
         }
         match self.options.stepping {
             Stepping::Fixed { .. } if !model.is_mechanism() => {
-                Ok(Attempt::Done { rate, error: 0.0, by: Limit::Fixed })
+                Ok(Attempt::Done { rate, error: 0.0, by: Limit::Fixed, strained: None })
             }
             Stepping::Fixed { .. } if model.turn(&work.trial.d) > MOST_TURN => {
                 bad("a body turns too far in one step: it may end on another branch of its joint")
@@ -332,22 +332,24 @@ impl Alpha {
             Stepping::Fixed { .. } if jumps(state, work) => {
                 bad("velocities jump: a mechanism leaves its branch, or an impact is shorter than `h`")
             }
-            Stepping::Fixed { .. } => Ok(Attempt::Done { rate, error: 0.0, by: Limit::Fixed }),
+            Stepping::Fixed { .. } => {
+                Ok(Attempt::Done { rate, error: 0.0, by: Limit::Fixed, strained: None })
+            }
             Stepping::Controlled { tolerance } => {
                 let turn = model.turn(&work.trial.d);
-                let [local, force] =
+                let (local, strained) =
                     self.error(model, state, work, h).map_err(|source| linear(model, state.t, source))?;
                 // errors of positions add up, per unit step, none by itself above all of them; stiff directions follow what
                 // moves them, and forget
                 let position = local * (self.horizon / h).max(1.0) / tolerance;
-                let error = larger(position, force);
-                let by = if force > position { Limit::Force } else { Limit::Position };
+                let error = larger(position, strained.ratio);
+                let by = if strained.ratio > position { Limit::Force } else { Limit::Position };
                 // a body that is driven has no error, but a larger turn may end on another branch of its joint
                 let error = if turn > 1.0 { error + turn * turn } else { error };
                 if error.is_nan() {
                     return bad("the error estimate is not a number");
                 }
-                Ok(Attempt::Done { rate, error, by })
+                Ok(Attempt::Done { rate, error, by, strained: Some(strained) })
             }
         }
     }
@@ -386,8 +388,8 @@ impl Alpha {
 
 /// What a trial step came to.
 enum Attempt {
-    /// It converged, with this estimated error over the tolerance, and what that is the error of.
-    Done { rate: Rate, error: f64, by: Limit },
+    /// It converged, with this estimated error over the tolerance, what that is the error of, and what it makes of tensions.
+    Done { rate: Rate, error: f64, by: Limit, strained: Option<Strained> },
     /// It converged to something that can't be, and is to be repeated with a smaller step.
     Bad { why: String },
     /// It didn't converge.
@@ -485,16 +487,16 @@ impl Integrator for Alpha {
         loop {
             let h = steps.h;
             let (why, repeat) = match self.attempt(model, state, work, h, &remedies)? {
-                Attempt::Done { rate, error, by } if error <= steps.allowed(by) => {
-                    let rings = work.forces.ring(state.control.h_last);
+                Attempt::Done { rate, error, by, strained } if error <= steps.allowed(by) => {
+                    let rings = work.forces.ring(state.control.h_last, self.options.force_tolerance);
                     self.accept(model, state, work, h, &rate);
                     let linkage = model.is_linkage();
                     let kept = if linkage { state.control.remembered(h, error, LAW.most[0]) } else { error };
                     steps.accepted(&mut state.control, kept, rate.iterations, by);
                     let (iterations, rejected, limit) = (rate.iterations, steps.rejected, steps.limit);
-                    return Ok(StepReport { h, iterations, rejected, error, limit, rings });
+                    return Ok(StepReport { h, iterations, rejected, error, limit, rings, strained });
                 }
-                Attempt::Done { rate, error, by } => {
+                Attempt::Done { rate, error, by, .. } => {
                     work.counts.rejected += 1;
                     if !steps.too_large(error, rate.iterations, by) {
                         return Err(too_strict(model, state.t, &steps, work));

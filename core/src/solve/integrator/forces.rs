@@ -31,6 +31,19 @@ pub(crate) struct Forces {
     reaction: Vec<f64>,
 }
 
+/// What an increment makes of the tension of a cable.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Strained {
+    /// Over what it may.
+    pub ratio: f64,
+    /// The number of the cable among the parts.
+    pub part: usize,
+    /// Where it is largest [N].
+    pub off: f64,
+    /// The largest force at work in the cable [N].
+    pub at_work: f64,
+}
+
 /// A cable as its tension is seen.
 #[derive(Clone, Debug)]
 struct Line {
@@ -45,8 +58,8 @@ struct Line {
 
 /// In how many places tension is looked at.
 const PLACES: usize = 9;
-/// What tension may swing by from step to step, in parts of the largest.
-const SWING: f64 = 0.05;
+/// What tension may swing by from step to step, in parts of its tolerance.
+const SWING: f64 = 2.0;
 /// What is kept of the largest force from one step to the next: forces that pass through zero are no reason to iterate.
 const MEMORY: f64 = 0.9;
 /// Residuals below so many units of rounding wander instead of falling.
@@ -166,8 +179,8 @@ impl Forces {
 
     /// What an increment `d` of the configuration `q` changes tensions by, over `tolerance` times the forces at work as of
     /// the last [`Forces::ratio`], in the cable where that is largest: at nodes and in the middle of elements.
-    pub fn strained(&self, q: &[f64], d: &[f64], tolerance: f64) -> f64 {
-        let mut worst = 0.0;
+    pub fn strained(&self, q: &[f64], d: &[f64], tolerance: f64) -> Strained {
+        let mut worst = Strained::default();
         for line in &self.cables {
             let mut most = 0.0;
             for (k, &(x, i, l)) in line.nodes.iter().enumerate() {
@@ -188,8 +201,11 @@ impl Forces {
                 }
             }
             // where nothing pulls, what iterations leave is all there is
-            let limit = tolerance * self.at_work(line.part) + 10.0 * self.rounding[line.part];
-            worst = larger(worst, line.ea * most / limit.max(f64::MIN_POSITIVE));
+            let (part, off, at_work) = (line.part, line.ea * most, self.at_work(line.part));
+            let ratio = off / (tolerance * at_work + 10.0 * self.rounding[part]).max(f64::MIN_POSITIVE);
+            if !(ratio <= worst.ratio) {
+                worst = Strained { ratio, part, off, at_work };
+            }
         }
         worst
     }
@@ -199,9 +215,10 @@ impl Forces {
         self.present[g].max(self.inertia[g].sqrt()).max(self.reaction[g])
     }
 
-    /// The part, if it is a cable whose tension swings to and fro from step to step, as seen at the start of the step that ends; `h`
-    /// is the one before [s]. Of several the last. Waves that steps resolve bend to the other side now and then, those that they don't in every step.
-    pub fn ring(&mut self, h: f64) -> Option<usize> {
+    /// The part, if it is a cable whose tension swings to and fro from step to step by a multiple of its `tolerance`, as seen at the
+    /// start of the step that ends; `h` is the one before [s]. Of several the last. Waves that steps resolve bend to the other side
+    /// now and then, those that they don't in every step.
+    pub fn ring(&mut self, h: f64, tolerance: f64) -> Option<usize> {
         if self.past.len() != self.seen.len() || !(h > 0.0) {
             self.past.clear();
             self.past.extend(self.seen.iter().map(|&tension| [tension, 0.0, 0.0]));
@@ -215,7 +232,7 @@ impl Forces {
                 let misses = tension - (*last + *rate * h);
                 // a swing of one to either side misses by four
                 let swing = if misses * *missed < 0.0 { 0.25 * misses.abs().min(missed.abs()) } else { 0.0 };
-                if swing > SWING * largest + self.rounding[line.part] {
+                if swing > SWING * tolerance * largest + self.rounding[line.part] {
                     rings = Some(line.part);
                 }
                 (*last, *rate, *missed) = (tension, (tension - *last) / h, misses);

@@ -26,6 +26,7 @@ pub(crate) use consistent::{
     MOST_MOVES, accelerate, agree, agree_in_velocity, consistent_by_iteration, consistent_by_mass,
     move_velocities, way_back,
 };
+pub use forces::Strained;
 pub(crate) use norm::{Group, Speeds};
 pub use options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping};
 pub use radau::Radau;

@@ -1,6 +1,7 @@
 //! One step of a scheme: what it offers, what it costs and why it may fail.
 
 use super::controller::StepController;
+use super::forces::Strained;
 use super::options::{Limits, Options};
 use super::workspace::Workspace;
 use crate::error::BuildError;
@@ -26,6 +27,8 @@ pub struct StepReport {
     pub limit: Limit,
     /// The number of the part whose tension swings to and fro from step to step, if one does.
     pub rings: Option<usize>,
+    /// What its error makes of tensions, where that is estimated.
+    pub strained: Option<Strained>,
 }
 
 /// Why a step could not be taken. The state is as it was before.

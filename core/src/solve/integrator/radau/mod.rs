@@ -168,7 +168,15 @@ impl Radau {
                     (c.eta, c.theta) = (rate.eta, rate.theta.unwrap_or(c.theta));
                     work.counts.steps += 1;
                     let (iterations, rejected, limit) = (rate.iterations, steps.rejected, steps.limit);
-                    return Ok(StepReport { h, iterations, rejected, error, limit, rings: None });
+                    return Ok(StepReport {
+                        h,
+                        iterations,
+                        rejected,
+                        error,
+                        limit,
+                        rings: None,
+                        strained: None,
+                    });
                 }
                 Ok((rate, error)) => {
                     work.counts.rejected += 1;
