@@ -27,23 +27,39 @@ pub(super) struct Rung {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Summed {
-    /// By the number of the part: the sum, and the largest force at work [N].
-    parts: Vec<[f64; 2]>,
+    parts: Vec<Sum>,
+}
+
+/// The same in one part [N].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Sum {
+    sum: f64,
+    /// The largest force at work, and the largest wave.
+    force: f64,
+    wave: f64,
+}
+
+impl Sum {
+    /// By how much of the largest force tensions may be off: a wave of which nothing is right by twice its size.
+    fn off(&self) -> f64 {
+        self.sum.min(2.0 * self.wave) / self.force
+    }
 }
 
 impl Summed {
-    fn add(&mut self, Strained { part, off, at_work, .. }: Strained) {
+    fn add(&mut self, Strained { part, off, at_work, wave, .. }: Strained) {
         if self.parts.len() <= part {
-            self.parts.resize(part + 1, [0.0; 2]);
+            self.parts.resize(part + 1, Sum::default());
         }
-        let [sum, largest] = &mut self.parts[part];
-        (*sum, *largest) = (*sum + off, largest.max(at_work));
+        let Sum { sum, force, wave: largest } = &mut self.parts[part];
+        (*sum, *force, *largest) = (*sum + off, force.max(at_work), largest.max(wave));
     }
 
-    /// The part in which the sum is largest beside the forces at work, and how large.
+    /// The part in which they come to most, and how much.
     fn most(&self) -> Option<(usize, f64)> {
-        let parts = self.parts.iter().enumerate().filter(|(_, [_, largest])| *largest > 0.0);
-        parts.map(|(part, [sum, largest])| (part, sum / largest)).max_by(|a, b| a.1.total_cmp(&b.1))
+        let parts = self.parts.iter().map(Sum::off).enumerate().filter(|(_, off)| !off.is_nan());
+        parts.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 }
 

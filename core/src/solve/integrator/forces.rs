@@ -42,6 +42,8 @@ pub struct Strained {
     pub off: f64,
     /// The largest force at work in the cable [N].
     pub at_work: f64,
+    /// Amplitude of the waves along the cable that its tension showed in the last steps [N].
+    pub wave: f64,
 }
 
 /// A cable as its tension is seen.
@@ -52,6 +54,10 @@ struct Line {
     /// Where tension is looked at [m].
     places: Vec<f64>,
     ea: f64,
+    /// A bound from below on the squares of its axial frequencies, with everything hung from it [1/s²].
+    slowest: f64,
+    /// Amplitude of the waves along it as of the last [`Forces::ring`] [N].
+    wave: f64,
     /// First coordinate and velocity of each node, and the length of the element behind it [m].
     nodes: Vec<(usize, usize, f64)>,
 }
@@ -91,6 +97,7 @@ impl Forces {
                 RowKind::Direction => (1.0 / arm, on.clone()),
             }));
         }
+        let mass: f64 = norms.groups.iter().map(|g| g.mass).sum();
         let cables = model.parts().iter().enumerate().filter_map(|(part, p)| {
             let (mesh, seats, ea) = (p.mesh(), p.seats(), p.slender()?.ea);
             let last = (mesh.len().checked_sub(1)?) as f64;
@@ -98,8 +105,10 @@ impl Forces {
             let mut places: Vec<f64> = (0..PLACES).map(place).collect();
             places.dedup();
             let behind = mesh.iter().skip(1).zip(mesh).map(|(b, a)| b - a).chain([0.0]);
+            let length = mesh[mesh.len() - 1] - mesh[0];
+            let slowest = ea / (mass * length);
             let nodes = seats.iter().zip(behind).map(|(&(q, v), l)| (q, v, l)).collect();
-            Some(Line { part, places, ea, nodes })
+            Some(Line { part, places, ea, slowest, wave: 0.0, nodes })
         });
         let none = vec![0.0; norms.groups.len()];
         Forces {
@@ -204,7 +213,7 @@ impl Forces {
             let (part, off, at_work) = (line.part, line.ea * most, self.at_work(line.part));
             let ratio = off / (tolerance * at_work + 10.0 * self.rounding[part]).max(f64::MIN_POSITIVE);
             if !(ratio <= worst.ratio) {
-                worst = Strained { ratio, part, off, at_work };
+                worst = Strained { ratio, part, off, at_work, wave: line.wave };
             }
         }
         worst
@@ -217,17 +226,18 @@ impl Forces {
 
     /// The part, if it is a cable whose tension swings to and fro from step to step by a multiple of its `tolerance`, as seen at the
     /// start of the step that ends; `h` is the one before [s]. Of several the last. Waves that steps resolve bend to the other side
-    /// now and then, those that they don't in every step.
+    /// now and then, those that they don't in every step. Notes how large the waves are as well.
     pub fn ring(&mut self, h: f64, tolerance: f64) -> Option<usize> {
         if self.past.len() != self.seen.len() || !(h > 0.0) {
             self.past.clear();
-            self.past.extend(self.seen.iter().map(|&tension| [tension, 0.0, 0.0]));
+            self.past.extend(self.seen.iter().map(|&tension| [tension, f64::NAN, f64::NAN]));
             return None;
         }
         let mut rings = None;
         let mut places = self.past.iter_mut().zip(&self.seen);
-        for line in &self.cables {
+        for line in &mut self.cables {
             let largest = self.present[line.part];
+            line.wave = 0.0;
             for ([last, rate, missed], &tension) in places.by_ref().take(line.places.len()) {
                 let misses = tension - (*last + *rate * h);
                 // a swing of one to either side misses by four
@@ -235,6 +245,8 @@ impl Forces {
                 if swing > SWING * tolerance * largest + self.rounding[line.part] {
                     rings = Some(line.part);
                 }
+                // a wave that steps resolve by its square of angle
+                line.wave = line.wave.max(misses.abs() / (line.slowest * h * h).min(4.0));
                 (*last, *rate, *missed) = (tension, (tension - *last) / h, misses);
             }
         }
