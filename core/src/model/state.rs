@@ -77,6 +77,9 @@ pub struct Control {
     /// largest: over each other the pace of the motion.
     #[cfg_attr(feature = "serde", serde(default))]
     pub pace: [f64; 2],
+    /// For how many steps yet the scheme is one that takes away what swings from step to step, and whether the last was one.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub calm: (u32, bool),
 }
 
 /// Derived `Clone` for two types whose `clone_from` must not allocate: it runs at every step.
@@ -111,7 +114,8 @@ clone_in_place!(Control {
     stages,
     stage_lambda,
     error,
-    pace
+    pace,
+    calm
 });
 
 /// Where terms and constraints are evaluated: slices into a state, or into a trial of an integrator.

@@ -16,18 +16,24 @@ const SLIVER: f64 = 0.2;
 const MOST_PIECES: usize = 100_000;
 
 impl Simulation {
-    /// The longest step from here that leaps over nothing, where `left` are left.
-    pub(super) fn limit(&self, left: f64) -> f64 {
+    /// The longest step from here that leaps over nothing, where `whole` is left, to the end or not. What is left for the last two
+    /// steps is shared out between them: a tension that is read at the end would ring after a step much shorter than those
+    /// before it.
+    pub(super) fn limit(&self, whole: f64, to_end: bool) -> f64 {
         let (model, at) = (&self.model, self.state.at());
-        let left = left.min(model.step_limit(&at));
+        let left = whole.min(model.step_limit(&at));
+        let control = &self.state.control;
+        let wish = if control.h_next > 0.0 { control.h_next } else { control.h_start };
+        let wish = wish.min(self.integrator.limits().most).min(left);
+        let shares = to_end && wish < whole && whole < 2.0 * wish;
+        let left = if shares { left.min(0.5 * whole) } else { left };
+        let wish = wish.min(left);
         if !model.is_timed() {
             return left;
         }
         // steps end just before a jump
         let left = left.min(model.jump(at.t) * (1.0 - 0.5 * SAME) - at.t);
-        let control = &self.state.control;
-        let wish = if control.h_next > 0.0 { control.h_next } else { control.h_start };
-        let wish = wish.min(self.integrator.limits().most).min(left);
+        let wish = wish.min(left);
         let reach = model.reach(&at, wish);
         if reach < wish {
             return reach;

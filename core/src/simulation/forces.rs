@@ -10,8 +10,8 @@ use crate::model::node::retract;
 use crate::model::state::State;
 use crate::model::term::Weights;
 use crate::solve::integrator::{
-    MOST_MOVES, Workspace, accelerate, agree, agree_in_velocity, consistent_by_iteration, consistent_by_mass,
-    move_velocities,
+    MOST_MOVES, Stepping, Workspace, accelerate, agree, agree_in_velocity, consistent_by_iteration,
+    consistent_by_mass, move_velocities,
 };
 use crate::solve::linear::SolveError;
 use crate::solve::times::Phase;
@@ -27,6 +27,9 @@ const FINE: f64 = 1e-2;
 const FAST: f64 = 0.03;
 /// What may be left, in parts of the forces at work, for the matrix of another state to lead on from there.
 const NEAR: f64 = 0.03;
+/// How far a single iteration may move a state, in parts of the tolerance of positions, or of a part's length where steps are fixed:
+/// an interpolation isn't off by more, and farther away there are other balances.
+const LEASH: [f64; 2] = [10.0, 1e-2];
 /// Iterations that do for that, also between the ends of a step of seconds.
 const MOST_ITERATIONS: usize = 30;
 
@@ -117,6 +120,10 @@ impl Simulation {
     /// Whether the iteration came to its end; what is left then stands in the workspace, if `forces` are asked for.
     fn balance(&mut self, weights: Weights, forces: bool, aside: &mut Workspace) -> bool {
         let tolerance = self.integrator.options().force_tolerance;
+        let leash = match self.integrator.options().stepping {
+            Stepping::Controlled { tolerance } => LEASH[0] * tolerance,
+            Stepping::Fixed { .. } => LEASH[1],
+        };
         // the end of a step is as balanced as it is
         let inside = self.scratch.t < self.state.t;
         let (model, work, s) = (&*self.model, &mut self.work, &mut self.scratch);
@@ -182,6 +189,10 @@ impl Simulation {
             let factors = if own { &mut *aside } else { &mut *work };
             if factors.solve_iteration(model, &mut x).is_err() {
                 break;
+            }
+            let far = weights.q * work.norms.relative(&x[..nv]);
+            if far > leash {
+                x.iter_mut().for_each(|x| *x *= leash / far);
             }
             for i in 0..nv {
                 d[i] = weights.q * x[i];

@@ -302,7 +302,7 @@ impl Simulation {
             let left = match self.integrator.options().stepping {
                 Stepping::Controlled { .. } => {
                     self.leap()?;
-                    self.limit(whole)
+                    self.limit(whole, target == end)
                 }
                 // a step that differs by rounding would need factors of its own
                 Stepping::Fixed { h } if (whole - h).abs() <= 8.0 * f64::EPSILON * target.abs() => h,

@@ -3,19 +3,19 @@
 use super::adding::{left, left_like_dice, left_once};
 use super::controller::{StepController, StepLaw};
 use super::convergence::{Failure, Rate};
-use super::forces::{Strained, larger};
+use super::forces::{Ringing, Strained, larger};
 use super::newton::Newton;
 use super::options::{ConstraintForm, Limits, NewtonPolicy, Options, Stepping};
 use super::predictor::{Past, best_order};
 use super::scales::{Scaled, Units};
-use super::scheme::Coefficients;
+use super::scheme::{Coefficients, Scheme};
 use super::start::{anew, settle};
 use super::step::{Integrator, StepError, StepReport, linear, too_strict};
 use super::workspace::{Which, Workspace};
 use crate::error::BuildError;
 use crate::model::Model;
 use crate::model::limit::Limit;
-use crate::model::state::State;
+use crate::model::state::{Control, State};
 use crate::solve::linear::SolveError;
 
 /// Integrator of the Newmark, HHT-α and generalized-α family on index-3 equations.
@@ -23,6 +23,8 @@ pub struct Alpha {
     options: Options,
     limits: Limits,
     scheme: Coefficients,
+    /// What takes its place for a few steps where tension swings ever wilder: it leaves nothing of what steps don't resolve.
+    calm: Coefficients,
     /// Time over which errors may add up [s].
     horizon: f64,
     units: Units,
@@ -43,6 +45,8 @@ const MOST_TURN: f64 = 1.5;
 const SHRUNK: f64 = 0.1;
 /// How many times more than that is far.
 const FAR: f64 = 100.0;
+/// Steps with the scheme that takes away what swings: two do it, one more finds what follows.
+const CALM: u32 = 3;
 /// Safety factor of the step-size controller.
 const SAFETY: f64 = 0.85;
 
@@ -52,6 +56,7 @@ impl Alpha {
     pub fn new(options: &Options, model: &Model, duration: f64) -> Result<Self, StepError> {
         options.check()?;
         let scheme = options.scheme.coefficients()?;
+        let calm = Scheme::GeneralizedAlpha { rho_inf: 0.0 }.coefficients()?;
         let mut warning = None;
         if model.multipliers() > 0
             && let Some(why) = options.scheme.unstable_with_constraints()?
@@ -69,12 +74,26 @@ impl Alpha {
         let units = options.scales.map_or(Ok(Units::SI), |scales| Units::of(scales, model))?;
         let horizon = options.horizon_in(duration);
         let limits = options.limits(duration);
-        Ok(Alpha { options: options.clone(), limits, scheme, horizon, units, warning })
+        Ok(Alpha { options: options.clone(), limits, scheme, calm, horizon, units, warning })
     }
 
     /// Its numbers.
     pub fn scheme(&self) -> &Coefficients {
         &self.scheme
+    }
+
+    /// Those of the next step, and of the last.
+    fn now(&self, control: &Control) -> &Coefficients {
+        if control.calm.0 > 0 { &self.calm } else { &self.scheme }
+    }
+
+    fn last(&self, control: &Control) -> &Coefficients {
+        if control.calm.1 { &self.calm } else { &self.scheme }
+    }
+
+    /// Whether a calm scheme can take the place of this one: its auxiliary accelerations are of another time than the true ones.
+    fn calms(&self) -> bool {
+        self.controlled() && self.scheme.lead() != 0.0
     }
 
     /// What Newton's method may leave of positions, relative to the length of each part, and what it may where rounding keeps
@@ -93,10 +112,18 @@ impl Alpha {
         }
     }
 
-    /// Rescales the auxiliary acceleration to a new step size: it stands `Δ h` away from the true one.
+    /// Rescales the auxiliary acceleration to a new step size or scheme: it stands `Δ h` away from the true one. Where a calm scheme
+    /// takes over it is the mean of the last two true ones, which has nothing of what swings: its own would be made `9` times larger.
     fn rescale(&self, state: &State, h: f64, aux: &mut Vec<f64>) {
-        let ratio = if state.control.h_last > 0.0 { h / state.control.h_last } else { 1.0 };
+        let c = &state.control;
+        let calm = c.calm.0 > 0;
         aux.clear();
+        if calm && !c.calm.1 && c.backs > 0 {
+            aux.extend(state.a.iter().zip(&c.a_back[0]).map(|(a, back)| 0.5 * (a + back)));
+            return;
+        }
+        let other = if calm == c.calm.1 { 1.0 } else { self.now(c).lead() / self.last(c).lead() };
+        let ratio = if c.h_last > 0.0 { other * h / c.h_last } else { 1.0 };
         aux.extend(state.aux.iter().zip(&state.a).map(|(aux, a)| a + ratio * (aux - a)));
     }
 
@@ -105,7 +132,9 @@ impl Alpha {
     /// multipliers would ring for tens of steps.
     fn fit_velocities(&self, model: &Model, state: &State, work: &mut Workspace, h: f64) {
         let mut v = work.trial.v_old.take().unwrap_or_default();
-        let (ratio, nv) = (h / state.control.h_last, model.velocities());
+        let [now, last] = [self.now(&state.control), self.last(&state.control)];
+        let other = (now.error_constant() / last.error_constant()).sqrt();
+        let (ratio, nv) = (other * h / state.control.h_last, model.velocities());
         let fits = ratio != 1.0 && ratio <= LAW.most[0];
         if !fits || !model.is_linkage() || self.stabilised(model) {
             return;
@@ -140,7 +169,7 @@ impl Alpha {
 
     /// Predicts the auxiliary acceleration: the true one is continued by the polynomial that was best last time.
     fn predict(&self, state: &State, h: f64, work: &mut Workspace) {
-        let c = &self.scheme;
+        let c = self.now(&state.control);
         let n = state.a.len();
         let (a, t) = (&state.a[..n], &mut work.trial);
         let (new, old) = (&mut t.aux[..n], &t.aux_old[..n]);
@@ -178,12 +207,13 @@ impl Alpha {
         work: &mut Workspace,
         h: f64,
     ) -> Result<(f64, Strained), SolveError> {
-        let factor = self.scheme.error_constant() * h * h;
+        let scheme = self.now(&state.control);
+        let factor = scheme.error_constant() * h * h;
         let (nv, mut e, mut rhs) =
             (model.velocities(), std::mem::take(&mut work.trial.d), std::mem::take(&mut work.trial.rhs));
         let t = &work.trial;
         for (e, (new, old)) in e.iter_mut().zip(t.aux.iter().zip(&t.aux_old)) {
-            *e = factor * self.scheme.mass() * (new - old);
+            *e = factor * scheme.mass() * (new - old);
         }
         // what is prescribed has no error
         model.without_driven(&state.internal, &mut e);
@@ -224,7 +254,7 @@ impl Alpha {
         let newton = Newton {
             model,
             state,
-            scheme: self.scheme,
+            scheme: *self.now(&state.control),
             h,
             policy: if self.full(state, remedies) { NewtonPolicy::Full } else { NewtonPolicy::Modified },
             max_iterations: self.options.max_iterations,
@@ -488,11 +518,18 @@ impl Integrator for Alpha {
             let h = steps.h;
             let (why, repeat) = match self.attempt(model, state, work, h, &remedies)? {
                 Attempt::Done { rate, error, by, strained } if error <= steps.allowed(by) => {
-                    let rings = work.forces.ring(state.control.h_last, self.options.force_tolerance);
+                    let Ringing { part: rings, grows } =
+                        work.forces.ring(state.control.h_last, self.options.force_tolerance);
                     self.accept(model, state, work, h, &rate);
                     let linkage = model.is_linkage();
                     let kept = if linkage { state.control.remembered(h, error, LAW.most[0]) } else { error };
                     steps.accepted(&mut state.control, kept, rate.iterations, by);
+                    if grows && self.calms() {
+                        steps.cap(&mut state.control);
+                    }
+                    let (calm, _) = state.control.calm;
+                    state.control.calm =
+                        (if grows && self.calms() { CALM } else { calm.saturating_sub(1) }, calm > 0);
                     let (iterations, rejected, limit) = (rate.iterations, steps.rejected, steps.limit);
                     return Ok(StepReport { h, iterations, rejected, error, limit, rings, strained });
                 }
@@ -529,6 +566,10 @@ impl Integrator for Alpha {
                 }
             };
             if repeat {
+                continue;
+            }
+            // where a motion breaks off for good, what is calm is none the wiser
+            if std::mem::take(&mut state.control.calm.0) > 0 {
                 continue;
             }
             // what comes and goes must not be leapt over

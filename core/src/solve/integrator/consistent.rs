@@ -16,6 +16,14 @@ const MET: f64 = 1e-4;
 pub(crate) const MOST_MOVES: usize = 4;
 /// Roundings of positions that constraints may be off by.
 pub(super) const ROUNDINGS: f64 = 8.0;
+/// How many times as many they may be off by where corrections are nothing but `noise`: a driven end far from the origin is
+/// moved to and fro by tens of roundings.
+const WANDERS: f64 = 16.0;
+
+/// Roundings of positions that constraints may be off by once an iteration ends.
+pub(super) fn roundings(noise: bool) -> f64 {
+    if noise { WANDERS * ROUNDINGS } else { ROUNDINGS }
+}
 
 /// How velocities were moved onto the constraints.
 #[derive(Clone, Copy, Default)]

@@ -163,6 +163,11 @@ impl<'a> StepController<'a> {
         true
     }
 
+    /// Caps the next steps below the present one, which was accepted although it was too long for the scheme.
+    pub fn cap(&self, control: &mut Control) {
+        control.h_cap = CAP * self.h;
+    }
+
     /// Notes an accepted step, and the size of the next. `by` says whether its error was that of positions or forces.
     pub fn accepted(&self, control: &mut Control, error: f64, iterations: u32, by: Limit) {
         if self.controlled {

@@ -46,6 +46,16 @@ pub struct Strained {
     pub wave: f64,
 }
 
+/// Whether tension swings to and fro from step to step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Ringing {
+    /// The number of a part whose tension does so by a multiple of its tolerance.
+    pub part: Option<usize>,
+    /// Whether a swing grows from step to step: where stiff directions turn along with the motion, long steps make more of what
+    /// the scheme damps in directions that stay.
+    pub grows: bool,
+}
+
 /// A cable as its tension is seen.
 #[derive(Clone, Debug)]
 struct Line {
@@ -56,16 +66,23 @@ struct Line {
     ea: f64,
     /// A bound from below on the squares of its axial frequencies, with everything hung from it [1/s²].
     slowest: f64,
-    /// Amplitude of the waves along it as of the last [`Forces::ring`] [N].
+    /// Amplitude of the waves along it as of the last [`Forces::ring`], and by how much its tension swings [N].
     wave: f64,
+    swing: f64,
+    /// Steps in which that has grown one after the other.
+    grown: u32,
     /// First coordinate and velocity of each node, and the length of the element behind it [m].
     nodes: Vec<(usize, usize, f64)>,
 }
 
 /// In how many places tension is looked at.
 const PLACES: usize = 9;
-/// What tension may swing by from step to step, in parts of its tolerance.
+/// What tension may swing by from step to step, in parts of its tolerance, and from where on a swing that grows is one of the
+/// scheme.
 const SWING: f64 = 2.0;
+const GROWS: f64 = 0.1;
+/// In how many steps one after the other it has grown then.
+const GROWN: u32 = 2;
 /// What is kept of the largest force from one step to the next: forces that pass through zero are no reason to iterate.
 const MEMORY: f64 = 0.9;
 /// Residuals below so many units of rounding wander instead of falling.
@@ -108,7 +125,7 @@ impl Forces {
             let length = mesh[mesh.len() - 1] - mesh[0];
             let slowest = ea / (mass * length);
             let nodes = seats.iter().zip(behind).map(|(&(q, v), l)| (q, v, l)).collect();
-            Some(Line { part, places, ea, slowest, wave: 0.0, nodes })
+            Some(Line { part, places, ea, slowest, wave: 0.0, swing: 0.0, grown: 0, nodes })
         });
         let none = vec![0.0; norms.groups.len()];
         Forces {
@@ -224,33 +241,38 @@ impl Forces {
         self.present[g].max(self.inertia[g].sqrt()).max(self.reaction[g])
     }
 
-    /// The part, if it is a cable whose tension swings to and fro from step to step by a multiple of its `tolerance`, as seen at the
-    /// start of the step that ends; `h` is the one before [s]. Of several the last. Waves that steps resolve bend to the other side
-    /// now and then, those that they don't in every step. Notes how large the waves are as well.
-    pub fn ring(&mut self, h: f64, tolerance: f64) -> Option<usize> {
+    /// Looks whether the tension of a cable swings to and fro from step to step, as seen at the start of the step that ends; `h` is
+    /// the one before [s]. Waves that steps resolve bend to the other side now and then, those that they don't in every step. Notes how
+    /// large the waves are as well.
+    pub fn ring(&mut self, h: f64, tolerance: f64) -> Ringing {
+        let mut ringing = Ringing::default();
         if self.past.len() != self.seen.len() || !(h > 0.0) {
             self.past.clear();
             self.past.extend(self.seen.iter().map(|&tension| [tension, f64::NAN, f64::NAN]));
-            return None;
+            return ringing;
         }
-        let mut rings = None;
         let mut places = self.past.iter_mut().zip(&self.seen);
         for line in &mut self.cables {
-            let largest = self.present[line.part];
-            line.wave = 0.0;
+            let before = line.swing;
+            (line.wave, line.swing) = (0.0, 0.0);
             for ([last, rate, missed], &tension) in places.by_ref().take(line.places.len()) {
                 let misses = tension - (*last + *rate * h);
                 // a swing of one to either side misses by four
-                let swing = if misses * *missed < 0.0 { 0.25 * misses.abs().min(missed.abs()) } else { 0.0 };
-                if swing > SWING * tolerance * largest + self.rounding[line.part] {
-                    rings = Some(line.part);
+                if misses * *missed < 0.0 {
+                    line.swing = line.swing.max(0.25 * misses.abs().min(missed.abs()));
                 }
                 // a wave that steps resolve by its square of angle
                 line.wave = line.wave.max(misses.abs() / (line.slowest * h * h).min(4.0));
                 (*last, *rate, *missed) = (tension, (tension - *last) / h, misses);
             }
+            let most = |part: f64| part * tolerance * self.present[line.part] + self.rounding[line.part];
+            if line.swing > most(SWING) {
+                ringing.part = Some(line.part);
+            }
+            line.grown = if line.swing > most(GROWS).max(before) { line.grown + 1 } else { 0 };
+            ringing.grows |= line.grown >= GROWN || line.swing > most(0.5);
         }
-        rings
+        ringing
     }
 
     /// Remembers the forces of an accepted step.

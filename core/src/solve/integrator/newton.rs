@@ -4,7 +4,7 @@
 //! `δv̇ = (1-αm)/(1-αf) δa` the matrix is `[(1-αm)/(1-αf) M + γ h C + β h² K, Gᵀ; G, 0]`, whose condition doesn't
 //! grow as the step shrinks (Bottasso, Bauchau & Cardona 2007), and β = 0 is no special case.
 
-use super::consistent::ROUNDINGS;
+use super::consistent::{ROUNDINGS, roundings};
 use super::convergence::{Convergence, FLOOR, Failure, Rate};
 use super::factors::{Factors, Remedy};
 use super::options::NewtonPolicy;
@@ -206,7 +206,8 @@ impl Newton<'_> {
     fn forces_met(&self, work: &mut Workspace, it: &Iteration, iterations: u32) -> Option<Rate> {
         self.evaluate(work, false, None);
         let force = self.force(work);
-        let met = (force <= 1.0 || it.convergence.stuck(force)) && self.constraints_hold(work);
+        let met = (force <= 1.0 || it.convergence.stuck(force))
+            && self.constraints_hold(work, it.convergence.is_noise());
         met.then(|| it.rate(iterations, !(force <= 1.0)))
     }
 
@@ -219,7 +220,10 @@ impl Newton<'_> {
         iterations: u32,
     ) -> Result<Option<Rate>, Failure> {
         let done = match test {
-            None => it.settled && it.convergence.force_left <= 1.0 && self.constraints_hold(work),
+            None => {
+                let c = &it.convergence;
+                it.settled && c.force_left <= 1.0 && self.constraints_hold(work, c.is_noise())
+            }
             Some(Test::Increment(limit)) => !it.approximate && self.increment(work) < limit,
             Some(_) => false,
         };
@@ -392,7 +396,7 @@ impl Newton<'_> {
         Ok(size)
     }
 
-    fn constraints_hold(&self, work: &mut Workspace) -> bool {
+    fn constraints_hold(&self, work: &mut Workspace, noise: bool) -> bool {
         if self.stabilised {
             self.constraint_rates(work);
             let limit = 1e-9 * self.model.length();
@@ -405,7 +409,7 @@ impl Newton<'_> {
             return true;
         }
         // what is left of them shakes the multipliers by its square of the step
-        let (most, least) = (1e-10 * self.model.length(), ROUNDINGS * self.model.rounding());
+        let (most, least) = (1e-10 * self.model.length(), roundings(noise) * self.model.rounding());
         self.met_to((10.0 * self.tolerance * self.model.length()).min(most).max(least), work)
     }
 

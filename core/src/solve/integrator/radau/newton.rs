@@ -9,6 +9,7 @@ use super::stages::Stages;
 use super::tableau::{ALPHA, GAMMA, T, T_INVERSE};
 use crate::model::Model;
 use crate::model::state::State;
+use crate::solve::integrator::consistent::roundings;
 use crate::solve::integrator::convergence::{Convergence, Failure, Rate};
 use crate::solve::integrator::factors::{Factors, Remedy};
 use crate::solve::integrator::forces::larger;
@@ -64,7 +65,7 @@ impl Newton<'_> {
                 unmet: false,
             };
             let forces_right = c.force_left <= 1.0 || size <= c.floor && c.since > 1;
-            if c.positions_right() && forces_right && self.constraints_hold(work, s) {
+            if c.positions_right() && forces_right && self.constraints_hold(work, s, c.is_noise()) {
                 return Ok(rate(c.eta, c.theta));
             }
             if c.since == 1 {
@@ -77,7 +78,7 @@ impl Newton<'_> {
             let left = self.max_iterations - iterations;
             // next to a singular position constraints hardly determine a direction
             let wanders = |work: &mut Workspace, s: &mut Stages| {
-                size <= self.wandering && forces_right && self.constraints_hold(work, s)
+                size <= self.wandering && forces_right && self.constraints_hold(work, s, c.is_noise())
             };
             match factors.judge(c, left) {
                 Remedy::GiveUp if wanders(work, s) => return Ok(rate(1.0, 0.0)),
@@ -155,12 +156,13 @@ impl Newton<'_> {
         Ok((size, force))
     }
 
-    fn constraints_hold(&self, work: &mut Workspace, s: &mut Stages) -> bool {
+    fn constraints_hold(&self, work: &mut Workspace, s: &mut Stages, noise: bool) -> bool {
         if self.linear_constraints {
             return true;
         }
         let length = self.model.length();
-        let limit = (1e-10 * length).min(self.tolerance * length).max(8.0 * self.model.rounding());
+        let limit =
+            (1e-10 * length).min(self.tolerance * length).max(roundings(noise) * self.model.rounding());
         let mut g = std::mem::take(&mut s.rate);
         let fine = (0..3).all(|i| {
             self.model.violations(&s.at(self.state, self.h, i), &mut work.system, &mut g);
