@@ -40,7 +40,7 @@ pub struct Strained {
     pub part: usize,
     /// Where it is largest [N].
     pub off: f64,
-    /// The largest force at work in the cable [N].
+    /// The largest force at work in the cable, or many times what rounding makes of it [N].
     pub at_work: f64,
     /// Amplitude of the waves along the cable that its tension showed in the last steps [N].
     pub wave: f64,
@@ -87,6 +87,8 @@ const GROWN: u32 = 2;
 const MEMORY: f64 = 0.9;
 /// Residuals below so many units of rounding wander instead of falling.
 const NOISE: f64 = 30.0;
+/// Forces of so many times what they wander by are nothing: those of a cable at rest.
+const QUIET: f64 = 1e4;
 
 /// The larger of two sizes; a NaN counts as the largest.
 pub(crate) fn larger(a: f64, b: f64) -> f64 {
@@ -227,9 +229,11 @@ impl Forces {
                 }
             }
             // where nothing pulls, what iterations leave is all there is
-            let (part, off, at_work) = (line.part, line.ea * most, self.at_work(line.part));
-            let ratio = off / (tolerance * at_work + 10.0 * self.rounding[part]).max(f64::MIN_POSITIVE);
+            let (part, off, noise) = (line.part, line.ea * most, 10.0 * self.rounding[line.part]);
+            let allowed = tolerance * self.at_work(part) + noise;
+            let ratio = off / allowed.max(f64::MIN_POSITIVE);
             if !(ratio <= worst.ratio) {
+                let at_work = self.at_work(part).max(QUIET * noise);
                 worst = Strained { ratio, part, off, at_work, wave: line.wave };
             }
         }
