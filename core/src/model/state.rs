@@ -77,9 +77,12 @@ pub struct Control {
     /// largest: over each other the pace of the motion.
     #[cfg_attr(feature = "serde", serde(default))]
     pub pace: [f64; 2],
-    /// For how many steps yet the scheme is one that takes away what swings from step to step, and whether the last was one.
+    /// For how many steps yet the scheme is one that takes away what swings from step to step.
     #[cfg_attr(feature = "serde", serde(default))]
-    pub calm: (u32, bool),
+    pub calm: u32,
+    /// Whether the last step was made with that.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub calmed: bool,
 }
 
 /// Derived `Clone` for two types whose `clone_from` must not allocate: it runs at every step.
@@ -115,7 +118,8 @@ clone_in_place!(Control {
     stage_lambda,
     error,
     pace,
-    calm
+    calm,
+    calmed
 });
 
 /// Where terms and constraints are evaluated: slices into a state, or into a trial of an integrator.

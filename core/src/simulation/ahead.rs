@@ -20,14 +20,11 @@ impl Simulation {
     /// steps is shared out between them: a tension that is read at the end would ring after a step much shorter than those
     /// before it.
     pub(super) fn limit(&self, whole: f64, to_end: bool) -> f64 {
-        let (model, at) = (&self.model, self.state.at());
-        let left = whole.min(model.step_limit(&at));
-        let control = &self.state.control;
+        let (model, at, control) = (&self.model, self.state.at(), &self.state.control);
         let wish = if control.h_next > 0.0 { control.h_next } else { control.h_start };
-        let wish = wish.min(self.integrator.limits().most).min(left);
-        let shares = to_end && wish < whole && whole < 2.0 * wish;
-        let left = if shares { left.min(0.5 * whole) } else { left };
-        let wish = wish.min(left);
+        let wish = wish.min(self.integrator.limits().most);
+        let two = to_end && wish < whole && whole < 2.0 * wish;
+        let left = if two { 0.5 * whole } else { whole }.min(model.step_limit(&at));
         if !model.is_timed() {
             return left;
         }

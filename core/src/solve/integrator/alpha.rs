@@ -82,13 +82,18 @@ impl Alpha {
         &self.scheme
     }
 
-    /// Those of the next step, and of the last.
+    /// The numbers of the next step.
     fn now(&self, control: &Control) -> &Coefficients {
-        if control.calm.0 > 0 { &self.calm } else { &self.scheme }
+        if control.calm > 0 { &self.calm } else { &self.scheme }
     }
 
-    fn last(&self, control: &Control) -> &Coefficients {
-        if control.calm.1 { &self.calm } else { &self.scheme }
+    /// What the scheme changes a number by between the last step and the next, as a ratio.
+    fn change(&self, control: &Control, of: impl Fn(&Coefficients) -> f64) -> f64 {
+        match (control.calm > 0, control.calmed) {
+            (true, false) => of(&self.calm) / of(&self.scheme),
+            (false, true) => of(&self.scheme) / of(&self.calm),
+            _ => 1.0,
+        }
     }
 
     /// Whether a calm scheme can take the place of this one: its auxiliary accelerations are of another time than the true ones.
@@ -112,18 +117,16 @@ impl Alpha {
         }
     }
 
-    /// Rescales the auxiliary acceleration to a new step size or scheme: it stands `Δ h` away from the true one. Where a calm scheme
-    /// takes over it is the mean of the last two true ones, which has nothing of what swings: its own would be made `9` times larger.
+    /// Rescales the auxiliary acceleration to a new step size or scheme: it stands `Δ h` away from the true one. Where the calm scheme
+    /// takes over, it is the mean of the last two true ones: it would have nine times the swing, and they have none together.
     fn rescale(&self, state: &State, h: f64, aux: &mut Vec<f64>) {
         let c = &state.control;
-        let calm = c.calm.0 > 0;
         aux.clear();
-        if calm && !c.calm.1 && c.backs > 0 {
+        if c.calm > 0 && !c.calmed && c.backs > 0 {
             aux.extend(state.a.iter().zip(&c.a_back[0]).map(|(a, back)| 0.5 * (a + back)));
             return;
         }
-        let other = if calm == c.calm.1 { 1.0 } else { self.now(c).lead() / self.last(c).lead() };
-        let ratio = if c.h_last > 0.0 { other * h / c.h_last } else { 1.0 };
+        let ratio = if c.h_last > 0.0 { self.change(c, Coefficients::lead) * h / c.h_last } else { 1.0 };
         aux.extend(state.aux.iter().zip(&state.a).map(|(aux, a)| a + ratio * (aux - a)));
     }
 
@@ -132,9 +135,8 @@ impl Alpha {
     /// multipliers would ring for tens of steps.
     fn fit_velocities(&self, model: &Model, state: &State, work: &mut Workspace, h: f64) {
         let mut v = work.trial.v_old.take().unwrap_or_default();
-        let [now, last] = [self.now(&state.control), self.last(&state.control)];
-        let other = (now.error_constant() / last.error_constant()).sqrt();
-        let (ratio, nv) = (other * h / state.control.h_last, model.velocities());
+        let scheme = self.change(&state.control, Coefficients::error_constant).sqrt();
+        let (ratio, nv) = (scheme * h / state.control.h_last, model.velocities());
         let fits = ratio != 1.0 && ratio <= LAW.most[0];
         if !fits || !model.is_linkage() || self.stabilised(model) {
             return;
@@ -524,12 +526,12 @@ impl Integrator for Alpha {
                     let linkage = model.is_linkage();
                     let kept = if linkage { state.control.remembered(h, error, LAW.most[0]) } else { error };
                     steps.accepted(&mut state.control, kept, rate.iterations, by);
+                    let control = &mut state.control;
+                    (control.calmed, control.calm) = (control.calm > 0, control.calm.saturating_sub(1));
                     if grows && self.calms() {
-                        steps.cap(&mut state.control);
+                        control.calm = CALM;
+                        steps.cap(control);
                     }
-                    let (calm, _) = state.control.calm;
-                    state.control.calm =
-                        (if grows && self.calms() { CALM } else { calm.saturating_sub(1) }, calm > 0);
                     let (iterations, rejected, limit) = (rate.iterations, steps.rejected, steps.limit);
                     return Ok(StepReport { h, iterations, rejected, error, limit, rings, strained });
                 }
@@ -568,8 +570,8 @@ impl Integrator for Alpha {
             if repeat {
                 continue;
             }
-            // where a motion breaks off for good, what is calm is none the wiser
-            if std::mem::take(&mut state.control.calm.0) > 0 {
+            // what fails with the calm scheme may do without
+            if std::mem::take(&mut state.control.calm) > 0 {
                 continue;
             }
             // what comes and goes must not be leapt over
