@@ -395,6 +395,10 @@ fn tension_that_swings_from_step_to_step_is_said_to() {
     assert!(warned("stepping = { fixed = { h = 0.5 } }\n"));
     assert!(!warned(&controlled(1e-3)) && !warned("") && !warned(SCHEMES[1]));
     assert!(!warned("stepping = { fixed = { h = 0.02 } }\n"));
+    // and what is not told is right
+    let [_, off] =
+        apart(&run(&case, &controlled(1e-3)), &run(&case, &(SCHEMES[1].to_string() + &controlled(1e-6))));
+    assert!(off < 0.03, "forces off by {off:e}");
 }
 
 /// In a steady turn the stiff direction of a hose turns with it, and long steps make more and more of what it is strained by: from

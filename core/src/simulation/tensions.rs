@@ -41,9 +41,10 @@ struct Sum {
 }
 
 impl Sum {
-    /// By how much of the largest force tensions may be off: a wave of which nothing is right by twice its size.
+    /// By how much of the largest force tensions may be off: a wave of which nothing is right by twice its size. Nothing where
+    /// nothing was looked at.
     fn off(&self) -> f64 {
-        self.sum.min(2.0 * self.wave) / self.force
+        if self.force == 0.0 { 0.0 } else { self.sum.min(2.0 * self.wave) / self.force }
     }
 }
 
@@ -58,8 +59,8 @@ impl Summed {
 
     /// The part in which they come to most, and how much.
     fn most(&self) -> Option<(usize, f64)> {
-        let parts = self.parts.iter().map(Sum::off).enumerate().filter(|(_, off)| !off.is_nan());
-        parts.max_by(|a, b| a.1.total_cmp(&b.1))
+        // a NaN counts as the most
+        self.parts.iter().map(Sum::off).enumerate().max_by(|a, b| a.1.total_cmp(&b.1))
     }
 }
 

@@ -51,7 +51,7 @@ pub struct Strained {
 pub(crate) struct Ringing {
     /// The number of a part whose tension does so by a multiple of its tolerance.
     pub part: Option<usize>,
-    /// Whether a swing grows from step to step: where stiff directions turn along with the motion, long steps make more of what
+    /// Whether a swing is large or grows from step to step: where stiff directions turn along with the motion, long steps make more of what
     /// the scheme damps in directions that stay.
     pub grows: bool,
 }
@@ -77,9 +77,10 @@ struct Line {
 
 /// In how many places tension is looked at.
 const PLACES: usize = 9;
-/// What tension may swing by from step to step, in parts of its tolerance, and from where on a swing that grows is one of the
-/// scheme.
+/// What tension may swing by from step to step before it is told, in parts of its tolerance …
 const SWING: f64 = 2.0;
+/// … before steps are too long for the scheme, and the same if it grows.
+const LONG: f64 = 0.5;
 const GROWS: f64 = 0.1;
 /// In how many steps one after the other it has grown then.
 const GROWN: u32 = 2;
@@ -252,6 +253,7 @@ impl Forces {
         let mut ringing = Ringing::default();
         if self.past.len() != self.seen.len() || !(h > 0.0) {
             self.past.clear();
+            // without a rate nothing is missed, and nothing swings
             self.past.extend(self.seen.iter().map(|&tension| [tension, f64::NAN, f64::NAN]));
             return ringing;
         }
@@ -274,7 +276,7 @@ impl Forces {
                 ringing.part = Some(line.part);
             }
             line.grown = if line.swing > most(GROWS).max(before) { line.grown + 1 } else { 0 };
-            ringing.grows |= line.grown >= GROWN || line.swing > most(0.5);
+            ringing.grows |= line.grown >= GROWN || line.swing > most(LONG);
         }
         ringing
     }
