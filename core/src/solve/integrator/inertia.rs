@@ -103,3 +103,50 @@ impl Workspace {
         s.restore(&self.y, out);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Start;
+    use crate::model::node::{Node, NodeKind};
+    use crate::model::pattern::Pattern;
+    use crate::model::term::{Assembly, Term};
+    use crate::solve::integrator::Which;
+
+    struct Mass;
+
+    impl Term for Mass {
+        fn label(&self) -> String {
+            "mass".into()
+        }
+        fn pattern(&self, p: &mut Pattern) {
+            p.clique(0..3);
+        }
+        fn add(&self, at: &At<'_>, out: &mut Assembly<'_>) {
+            (0..3).for_each(|i| out.add(i, 2.0 * at.a[i]));
+            let a = out.weights().a;
+            out.add_block(0, 3, |r, c| if r == c { 2.0 * a } else { 0.0 });
+        }
+    }
+
+    /// Factors that were taken serve until the matrix is made anew, and no longer.
+    #[test]
+    fn a_matrix_is_taken_again_once_it_is_another() {
+        let nodes = vec![Node { kind: NodeKind::Point, q: 0, v: 0, shared: false }];
+        let start = Start { q: vec![0.0; 3], v: vec![0.0; 3], internal: vec![] };
+        let model = Model::new(nodes, vec![Box::new(Mass)], vec![], vec![], start, 1.0);
+        let [mut work, mut aside] = [(); 2].map(|()| Workspace::new(&model).expect("scratch"));
+        let state = model.state();
+        work.ensure_mass(&model, &state.at(), &state.lambda).expect("a mass");
+        let mut accelerate = |work: &Workspace| {
+            assert!(aside.take_inertia(&model, work).expect("factors"));
+            let mut force = [2.0; 3];
+            aside.solve(&model, Which::Mass, &mut force).expect("a solution");
+            (force[0], aside.counts.factorizations)
+        };
+        assert_eq!([accelerate(&work), accelerate(&work)], [(1.0, 1); 2]);
+        let heavier: Vec<f64> = work.inertia.values().iter().map(|m| 2.0 * m).collect();
+        work.inertia.take(&heavier);
+        assert_eq!(accelerate(&work), (0.5, 2));
+    }
+}
