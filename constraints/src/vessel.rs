@@ -52,7 +52,8 @@ type Six = [[f64; 3]; MOTIONS];
 
 /// Where the six motions come from.
 enum Source {
-    Waves { response: VesselResponse, period: f64 },
+    /// With the shortest and the mean period of the waves [s].
+    Waves { response: VesselResponse, periods: [f64; 2] },
     Table { curves: Vec<Interpolation>, knots: Vec<Knots>, range: (f64, f64), ramp: f64 },
 }
 
@@ -143,11 +144,17 @@ impl Motion for Course {
     }
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         Some(match &self.source {
-            Source::Waves { period, .. } => reach::period(*period, h),
+            Source::Waves { periods: [shortest, _], .. } => reach::period(*shortest, h),
             Source::Table { knots, ramp, .. } => {
                 knots.iter().fold(reach::rise(0.0, *ramp, t, h), |h, knots| knots.reach(t, h))
             }
         })
+    }
+    fn period(&self, _t: f64) -> f64 {
+        match self.source {
+            Source::Waves { periods: [_, mean], .. } => mean,
+            Source::Table { .. } => f64::INFINITY,
+        }
     }
 }
 
@@ -192,7 +199,7 @@ impl VesselSpec {
                 })?;
                 let waves = sea.waves();
                 let response = VesselResponse::new(waves, &responses, [place[0], place[1]], self.heading);
-                Ok(Source::Waves { response, period: TAU / waves.fastest() })
+                Ok(Source::Waves { response, periods: [TAU / waves.fastest(), waves.period()] })
             }
             (None, Some(file)) => {
                 let ramp = not_negative("ramp", self.ramp)?;

@@ -264,6 +264,9 @@ impl Timed for PointMass {
     fn reach(&self, _t: f64, h: f64) -> Option<f64> {
         Some(self.sea.as_ref().map_or(h, |(sea, _)| sea.reach(h)))
     }
+    fn period(&self, _t: f64) -> f64 {
+        self.sea.as_ref().map_or(f64::INFINITY, |(sea, _)| sea.period())
+    }
 }
 
 /// A compact body: a sinker, a buoy, the load at the end of a hose.

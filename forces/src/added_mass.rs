@@ -278,6 +278,9 @@ impl Law for AddedMass {
     fn reach(&self, _t: f64, h: f64) -> Option<f64> {
         Some(self.sea.as_ref().map_or(h, |sea| sea.reach(h)))
     }
+    fn period(&self, _t: f64) -> f64 {
+        self.sea.as_ref().map_or(f64::INFINITY, |sea| sea.period())
+    }
 
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {

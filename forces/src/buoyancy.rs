@@ -90,6 +90,9 @@ impl Law for Buoyancy {
     fn reach(&self, _t: f64, h: f64) -> Option<f64> {
         Some(self.surface.reach(h))
     }
+    fn period(&self, _t: f64) -> f64 {
+        self.surface.period()
+    }
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
         let top = self.surface.top(t, at);
@@ -225,6 +228,9 @@ impl Term for Float {
 impl Timed for Float {
     fn reach(&self, _t: f64, h: f64) -> Option<f64> {
         Some(self.surface.reach(h))
+    }
+    fn period(&self, _t: f64) -> f64 {
+        self.surface.period()
     }
 }
 

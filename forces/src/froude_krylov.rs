@@ -37,6 +37,9 @@ impl Law for FroudeKrylov {
     fn reach(&self, _t: f64, h: f64) -> Option<f64> {
         Some(self.sea.reach(h))
     }
+    fn period(&self, _t: f64) -> f64 {
+        self.sea.period()
+    }
     #[inline(always)]
     fn load<R: Real, const TANGENT: bool>(&self, t: f64, at: &Station<R>, out: &mut Load<R>) {
         add_in_waves::<R, TANGENT, 3>(self, at, Some(&self.sea.along(t, at)), out);

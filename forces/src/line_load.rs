@@ -44,6 +44,9 @@ impl Law for LineLoad {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         Some(self.time.reach(t, h))
     }
+    fn period(&self, _t: f64) -> f64 {
+        self.time.period()
+    }
     fn gives(&self) -> Gives {
         Gives { slope: self.per == PerLength::Stretched, ..Gives::NOTHING }
     }

@@ -226,6 +226,9 @@ impl Timed for PointMoment {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         Some(self.time.reach(t, h))
     }
+    fn period(&self, _t: f64) -> f64 {
+        self.time.period()
+    }
 }
 
 /// A moment on a rigid body or a cable, in space or in the axes of the body. A component along a cable twists it if it has

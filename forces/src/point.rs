@@ -204,6 +204,9 @@ impl Timed for PointForce {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         Some(self.time.reach(t, h))
     }
+    fn period(&self, _t: f64) -> f64 {
+        self.time.period()
+    }
 }
 
 /// A force at a marker: in a constant direction, in the axes of a rigid body, or along a cable.

@@ -89,6 +89,11 @@ impl Surface {
         self.sea.as_ref().map_or(h, |sea| sea.reach(h))
     }
 
+    /// The period of its waves [s], as [`Law::period`](ropewalk_core::Law::period).
+    pub(crate) fn period(&self) -> f64 {
+        self.sea.as_ref().map_or(f64::INFINITY, |sea| sea.period())
+    }
+
     /// How a station's cell lies in the water, which stands above it as [`Surface::top`] says.
     #[inline(always)]
     pub fn wet<R: Real>(&self, at: &Station<R>, top: Option<&Top<R>>) -> Wet<R> {

@@ -202,6 +202,14 @@ impl TimeFunction {
         }
     }
 
+    /// The period with which it goes to and fro [s], infinite if it doesn't.
+    pub fn period(&self) -> f64 {
+        match self {
+            TimeFunction::Harmonic { frequency, .. } => 1.0 / frequency,
+            _ => f64::INFINITY,
+        }
+    }
+
     /// The factor at time `t` [s].
     #[inline]
     pub fn at(&self, t: f64) -> f64 {

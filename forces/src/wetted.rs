@@ -163,6 +163,9 @@ impl<L: Immersed> Law for Wetted<L> {
         let h = self.surface.reach(h);
         if self.law.timed() { self.law.reach(t, h) } else { Some(h) }
     }
+    fn period(&self, t: f64) -> f64 {
+        self.surface.period().min(self.law.period(t))
+    }
     fn follows_material(&self) -> bool {
         self.law.follows_material()
     }

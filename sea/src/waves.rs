@@ -4,7 +4,7 @@ use crate::dispersion::{wavenumber, wavenumber_on_current};
 use crate::error::{SeaError, finite, positive};
 use crate::motion::{Motion, Top};
 use ropewalk_core::Real;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// A regular wave: `η = a cos(k (x cos β + y sin β) - ω t + φ)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -181,6 +181,11 @@ impl Waves {
     /// Highest frequency that an observer at rest sees [rad/s].
     pub fn fastest(&self) -> f64 {
         self.all.iter().fold(0.0, |m, c| c.omega.max(m))
+    }
+    /// Mean period between waves that rise through the still level once they have risen [s], `2π √(m₀/m₂)`.
+    pub fn period(&self) -> f64 {
+        let moment = |of: fn(f64) -> f64| self.all.iter().map(|c| of(c.omega) * c.a * c.a).sum::<f64>();
+        TAU * (moment(|_| 1.0) / moment(|omega| omega * omega)).sqrt()
     }
     /// Standard deviation of the elevation once they have risen [m].
     pub fn deviation(&self) -> f64 {

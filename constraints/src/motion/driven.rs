@@ -137,4 +137,7 @@ impl Motion for DrivenHarmonic {
         let rise = reach::rise(self.start, self.start + self.ramp, t, h);
         Some(reach::after(self.start, t, rise, swing))
     }
+    fn period(&self, t: f64) -> f64 {
+        1.0 / self.frequency.at(t).abs()
+    }
 }

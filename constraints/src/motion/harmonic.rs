@@ -73,4 +73,7 @@ impl Motion for Harmonic {
         let rise = reach::rise(self.start, self.start + self.ramp, t, h);
         Some(reach::after(self.start, t, rise, swing))
     }
+    fn period(&self, _t: f64) -> f64 {
+        1.0 / self.frequency
+    }
 }

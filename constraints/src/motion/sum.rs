@@ -41,6 +41,9 @@ impl Motion for Sum {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         self.of.iter().try_fold(h, |h, m| m.reach(t, h))
     }
+    fn period(&self, t: f64) -> f64 {
+        self.of.iter().fold(f64::INFINITY, |least, m| least.min(m.period(t)))
+    }
     /// Straight runs add up; what turns is steady beside what rests.
     fn steady(&self, t: f64) -> Option<SteadyFrame> {
         let frames: Option<Vec<SteadyFrame>> = self.of.iter().map(|m| m.steady(t)).collect();

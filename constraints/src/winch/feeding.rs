@@ -54,6 +54,9 @@ impl Constraint for Feeding {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         self.motion.reach(t, h)
     }
+    fn period(&self, t: f64) -> f64 {
+        self.motion.period(t)
+    }
     fn prescribes(&self) -> Option<(usize, usize)> {
         Some((self.boundary.q, self.boundary.v))
     }

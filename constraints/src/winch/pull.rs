@@ -105,6 +105,9 @@ impl Timed for Pull {
         let h = self.signals().iter().fold(h, |h, s| s.reach(t, h));
         self.reference.as_ref().map_or(Some(h), |motion| motion.reach(t, h))
     }
+    fn period(&self, t: f64) -> f64 {
+        self.reference.as_ref().map_or(f64::INFINITY, |motion| motion.period(t))
+    }
 }
 
 impl Shows for Pull {

@@ -15,6 +15,10 @@ pub trait Timed {
     fn reach(&self, _t: f64, _h: f64) -> Option<f64> {
         None
     }
+    /// The period with which time makes it go to and fro [s], infinite if it doesn't, as [`Motion::period`](crate::Motion::period).
+    fn period(&self, _t: f64) -> f64 {
+        f64::INFINITY
+    }
     /// When its force jumps next after `t` [s]; infinite if it never does. Error control ends a step just before and
     /// starts anew there.
     fn jump(&self, _t: f64) -> f64 {

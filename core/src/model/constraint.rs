@@ -67,6 +67,10 @@ pub trait Constraint: Send + Sync {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         self.imposes().map_or(Some(h), |m| m.reach(t, h))
     }
+    /// The period with which its motion goes to and fro [s], as [`Motion::period`].
+    fn period(&self, t: f64) -> f64 {
+        self.imposes().map_or(f64::INFINITY, |m| m.period(t))
+    }
     /// The angle by which its motion turns what it holds between two times [rad]: another by a whole turn, of a joint by half
     /// of one, can't be told from it where both meet its equations.
     fn turned(&self, _from: f64, _to: f64) -> f64 {

@@ -26,6 +26,8 @@ pub enum Limit {
     Longest,
     /// Something ahead that no step may leap over: a kink or jump of a load or motion, a shape.
     Ahead,
+    /// The period with which a motion, a load or waves go to and fro.
+    Period,
     /// An event: the step ends there, or it is the first after one.
     Event,
     /// An instant at which the run has to stand: of a controller, or its end.
@@ -34,7 +36,7 @@ pub enum Limit {
 
 impl Limit {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Limit; 10] = [
+    pub const ALL: [Limit; 11] = [
         Limit::Start,
         Limit::Fixed,
         Limit::Position,
@@ -43,6 +45,7 @@ impl Limit {
         Limit::Growth,
         Limit::Longest,
         Limit::Ahead,
+        Limit::Period,
         Limit::Event,
         Limit::Instant,
     ];
@@ -58,6 +61,7 @@ impl Limit {
             Limit::Growth => "growth",
             Limit::Longest => "h_max",
             Limit::Ahead => "kink or contact ahead",
+            Limit::Period => "period of what swings",
             Limit::Event => "event",
             Limit::Instant => "instant",
         }

@@ -54,6 +54,11 @@ pub trait Motion: Send + Sync + Debug {
     fn reach(&self, _t: f64, _h: f64) -> Option<f64> {
         None
     }
+    /// The period with which it goes to and fro at time `t` [s], infinite if it doesn't: error control takes so many steps for each
+    /// that the tensions which answer to it are right.
+    fn period(&self, _t: f64) -> f64 {
+        f64::INFINITY
+    }
     /// The frame in which the motion is at rest from `t` on, if it is steady then: a straight run, a steady turn.
     fn steady(&self, _t: f64) -> Option<SteadyFrame> {
         None

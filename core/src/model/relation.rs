@@ -150,6 +150,9 @@ impl<R: Relation> Constraint for Related<R> {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         self.relation.follows().map_or(Some(h), |m| m.reach(t, h))
     }
+    fn period(&self, t: f64) -> f64 {
+        self.relation.follows().map_or(f64::INFINITY, |m| m.period(t))
+    }
 
     fn turned(&self, from: f64, to: f64) -> f64 {
         self.relation.turned(from, to)

@@ -16,13 +16,24 @@ const SLIVER: f64 = 0.2;
 const MOST_PIECES: usize = 100_000;
 
 impl Simulation {
-    /// The longest step from here that leaps over nothing, where `whole` is left, to the end or not. What is left for the last two
-    /// steps is shared out between them: a tension that is read at the end would ring after a step much shorter than those
-    /// before it.
-    pub(super) fn limit(&self, whole: f64, to_end: bool) -> f64 {
+    /// The longest step from here that leaps over nothing and follows what swings, where `whole` is left, to the end or not; and
+    /// what bounds it. What is left for the last two steps is shared out between them: a tension that is read at the end would
+    /// ring after a step much shorter than those before it.
+    pub(super) fn limit(&self, whole: f64, to_end: bool) -> (f64, Limit) {
+        let swing = self.model.period(&self.state.at()) / self.integrator.per_period();
+        let left = self.leaps_nothing(whole, to_end, swing.min(self.integrator.limits().most));
+        match left {
+            _ if swing < left => (swing, Limit::Period),
+            _ if left >= whole => (left, Limit::Instant),
+            _ => (left, Limit::Ahead),
+        }
+    }
+
+    /// The longest step that leaps over nothing, where those that are left are at most so long.
+    fn leaps_nothing(&self, whole: f64, to_end: bool, most: f64) -> f64 {
         let (model, at, control) = (&self.model, self.state.at(), &self.state.control);
         let wish = if control.h_next > 0.0 { control.h_next } else { control.h_start };
-        let wish = wish.min(self.integrator.limits().most);
+        let wish = wish.min(most);
         let two = to_end && wish < whole && whole < 2.0 * wish;
         let left = if two { 0.5 * whole } else { whole }.min(model.step_limit(&at));
         if !model.is_timed() {
@@ -119,6 +130,13 @@ impl Model {
         let h = self.timed_terms().fold(h, |h, (_, timed)| told(h, timed.reach(at.t, h)));
         let holding = self.moving_constraints().filter(|(c, _)| self.holds(*c, at.internal));
         holding.fold(h, |h, (_, constraint)| told(h, constraint.reach(at.t, h)))
+    }
+
+    /// The shortest period with which time makes anything go to and fro [s].
+    fn period(&self, at: &At<'_>) -> f64 {
+        let terms = self.timed_terms().map(|(_, timed)| timed.period(at.t));
+        let holding = self.moving_constraints().filter(|(c, _)| self.holds(*c, at.internal));
+        terms.chain(holding.map(|(_, c)| c.period(at.t))).fold(f64::INFINITY, f64::min)
     }
 
     /// When a force jumps next.

@@ -299,14 +299,14 @@ impl Simulation {
             self.take_jumps()?;
             let target = end.min(self.next_control());
             let whole = target - self.state.t;
-            let left = match self.integrator.options().stepping {
+            let (left, bound) = match self.integrator.options().stepping {
                 Stepping::Controlled { .. } => {
                     self.leap()?;
                     self.limit(whole, target == end)
                 }
                 // a step that differs by rounding would need factors of its own
-                Stepping::Fixed { h } if (whole - h).abs() <= 8.0 * f64::EPSILON * target.abs() => h,
-                Stepping::Fixed { .. } => whole,
+                Stepping::Fixed { h } if (whole - h).abs() <= 8.0 * f64::EPSILON * target.abs() => (h, Limit::Instant),
+                Stepping::Fixed { .. } => (whole, Limit::Instant),
             };
             self.model.relabel(&mut self.state);
             self.previous.clone_from(&self.state);
@@ -327,7 +327,7 @@ impl Simulation {
             let fired = self.locate(observer);
             report.limit = match report.limit {
                 _ if fired.is_some() => Limit::Event,
-                Limit::Ahead if left >= whole => Limit::Instant,
+                Limit::Ahead => bound,
                 other => other,
             };
             self.work.counts.limits[report.limit as usize] += 1;

@@ -30,8 +30,8 @@ pub struct FreeVessel {
     damping: Six,
     quadratic: [f64; MOTIONS],
     mean_load: [f64; MOTIONS],
-    /// Loads of the waves, and the shortest period of those [s].
-    waves: Option<(VesselResponse, f64)>,
+    /// Loads of the waves, and the shortest and the mean period of those [s].
+    waves: Option<(VesselResponse, [f64; 2])>,
 }
 
 impl FreeVessel {
@@ -63,10 +63,10 @@ impl FreeVessel {
         self
     }
 
-    /// The same with loads of waves, the shortest of which has this period [s].
+    /// The same with loads of waves, of which these are the shortest and the mean period [s].
     #[must_use]
-    pub fn in_waves(mut self, response: VesselResponse, period: f64) -> Self {
-        self.waves = Some((response, period));
+    pub fn in_waves(mut self, response: VesselResponse, periods: [f64; 2]) -> Self {
+        self.waves = Some((response, periods));
         self
     }
 
@@ -197,7 +197,10 @@ impl Term for FreeVessel {
 
 impl Timed for FreeVessel {
     fn reach(&self, _t: f64, h: f64) -> Option<f64> {
-        Some(self.waves.as_ref().map_or(f64::INFINITY, |(_, period)| reach::period(*period, h)))
+        Some(self.waves.as_ref().map_or(f64::INFINITY, |(_, [shortest, _])| reach::period(*shortest, h)))
+    }
+    fn period(&self, _t: f64) -> f64 {
+        self.waves.as_ref().map_or(f64::INFINITY, |(_, [_, mean])| *mean)
     }
 }
 

@@ -156,7 +156,7 @@ impl FreeVesselSpec {
     }
 
     /// Loads of the waves of the scene.
-    fn waves(&self, b: &Builder, place: [f64; 2]) -> Result<Option<(VesselResponse, f64)>, BuildError> {
+    fn waves(&self, b: &Builder, place: [f64; 2]) -> Result<Option<(VesselResponse, [f64; 2])>, BuildError> {
         let Some(loads) = &self.loads else { return Ok(None) };
         let responses = loads.loads("loads")?;
         let sea = b.water().ok().and_then(|water| water.sea.clone()).ok_or_else(|| {
@@ -164,7 +164,8 @@ impl FreeVesselSpec {
             BuildError::at("loads", message)
         })?;
         let waves = sea.waves();
-        Ok(Some((VesselResponse::new(waves, &responses, place, self.heading), TAU / waves.fastest())))
+        let periods = [TAU / waves.fastest(), waves.period()];
+        Ok(Some((VesselResponse::new(waves, &responses, place, self.heading), periods)))
     }
 }
 
@@ -221,8 +222,8 @@ impl ForceSpec for FreeVesselSpec {
             self.quadratic_damping,
             self.mean_load,
         );
-        if let Some((response, period)) = self.waves(b, [place[0], place[1]])? {
-            vessel = vessel.in_waves(response, period);
+        if let Some((response, periods)) = self.waves(b, [place[0], place[1]])? {
+            vessel = vessel.in_waves(response, periods);
         }
         b.term(Box::new(vessel));
         if added.iter().flatten().any(|x| *x != 0.0) {

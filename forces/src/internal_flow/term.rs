@@ -311,4 +311,7 @@ impl Timed for InternalFlow {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         Some(self.speed.reach(t, self.time.reach(t, h)))
     }
+    fn period(&self, _t: f64) -> f64 {
+        self.time.period()
+    }
 }

@@ -120,4 +120,7 @@ impl Timed for FeedingEnd {
     fn reach(&self, _t: f64, h: f64) -> Option<f64> {
         Some(self.added_mass.sea.as_ref().map_or(h, |sea| sea.reach(h)))
     }
+    fn period(&self, _t: f64) -> f64 {
+        self.added_mass.sea.as_ref().map_or(f64::INFINITY, |sea| sea.period())
+    }
 }

@@ -145,4 +145,7 @@ impl<L: TipLaw> Timed for AtTip<L> {
     fn reach(&self, _t: f64, h: f64) -> Option<f64> {
         Some(self.law.sea().map_or(h, |sea| sea.reach(h)))
     }
+    fn period(&self, _t: f64) -> f64 {
+        self.law.sea().map_or(f64::INFINITY, |sea| sea.period())
+    }
 }

@@ -118,6 +118,11 @@ impl Sea {
         reach::period(TAU / self.waves.fastest(), h)
     }
 
+    /// The period of its waves [s]: of many the mean time between those that rise through the still level.
+    pub fn period(&self) -> f64 {
+        self.waves.period()
+    }
+
     /// The motion of the water at time `t` [s] at places.
     #[inline(always)]
     pub fn at<R: Real>(&self, t: f64, x: &V3<R>) -> Swell<R> {

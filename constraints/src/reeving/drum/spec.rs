@@ -172,6 +172,9 @@ impl Motion for Geared {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         self.motion.reach(t, h)
     }
+    fn period(&self, t: f64) -> f64 {
+        self.motion.period(t)
+    }
     fn range(&self) -> (f64, f64) {
         self.motion.range()
     }

@@ -132,6 +132,9 @@ impl Constraint for Winds {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         self.inner.reach(t, h)
     }
+    fn period(&self, t: f64) -> f64 {
+        self.inner.period(t)
+    }
     fn range(&self) -> (f64, f64) {
         self.inner.range()
     }

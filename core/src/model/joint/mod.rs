@@ -223,6 +223,9 @@ impl Constraint for Joint {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         self.motions().try_fold(h, |h, m| m.reach(t, h))
     }
+    fn period(&self, t: f64) -> f64 {
+        self.motions().fold(f64::INFINITY, |least, m| least.min(m.period(t)))
+    }
     fn turned(&self, from: f64, to: f64) -> f64 {
         let arrows = self.equations.iter().filter_map(Equation::arrows).flatten();
         let angles = arrows.filter_map(|arrow| match arrow {

@@ -86,6 +86,7 @@ pub(super) trait ErasedLaw: Send + Sync {
     fn local(&self, quantity: &str, t: f64, at: &Station<f64>) -> Option<f64>;
     fn timed(&self) -> bool;
     fn reach(&self, t: f64, h: f64) -> Option<f64>;
+    fn period(&self, t: f64) -> f64;
     fn join(&self, other: &dyn Any) -> Option<Joined>;
     fn as_any(&self) -> &dyn Any;
 }
@@ -166,6 +167,9 @@ impl<L: Law> ErasedLaw for L {
     }
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         Law::reach(self, t, h)
+    }
+    fn period(&self, t: f64) -> f64 {
+        Law::period(self, t)
     }
     fn join(&self, other: &dyn Any) -> Option<Joined> {
         Law::join(self, other)

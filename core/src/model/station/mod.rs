@@ -174,6 +174,10 @@ pub trait Law: Send + Sync + 'static {
     fn reach(&self, _t: f64, _h: f64) -> Option<f64> {
         None
     }
+    /// The period with which time makes it go to and fro [s], as [`Timed::period`].
+    fn period(&self, _t: f64) -> f64 {
+        f64::INFINITY
+    }
     /// Whether it asks for the acceleration of the material where that runs along the curve, as on a cable that feeds; else it
     /// is that of the curve, at a fixed distance from the end that feeds.
     fn follows_material(&self) -> bool {
@@ -387,6 +391,9 @@ impl Term for FieldTerm {
 impl Timed for FieldTerm {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         self.laws.all.iter().filter(|l| l.timed()).try_fold(h, |h, l| l.reach(t, h))
+    }
+    fn period(&self, t: f64) -> f64 {
+        self.laws.all.iter().filter(|l| l.timed()).fold(f64::INFINITY, |least, l| least.min(l.period(t)))
     }
 }
 

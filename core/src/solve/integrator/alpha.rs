@@ -17,6 +17,7 @@ use crate::model::Model;
 use crate::model::limit::Limit;
 use crate::model::state::{Control, State};
 use crate::solve::linear::SolveError;
+use std::f64::consts::TAU;
 
 /// Integrator of the Newmark, HHT-α and generalized-α family on index-3 equations.
 pub struct Alpha {
@@ -49,6 +50,8 @@ const FAR: f64 = 100.0;
 const CALM: u32 = 3;
 /// Safety factor of the step-size controller.
 const SAFETY: f64 = 0.85;
+/// How many times as much as inertia is off a tension may be, where it answers to what swings: next to a resonance.
+const ANSWER: f64 = 5.0;
 
 impl Alpha {
     /// Checks the options against the model. `duration` is the length of the run, over which errors add up unless
@@ -470,6 +473,12 @@ impl Integrator for Alpha {
 
     fn horizon(&self) -> f64 {
         self.horizon
+    }
+
+    fn per_period(&self) -> f64 {
+        // where all goes to and fro with `ω`, the inertia of a step `h` is off by `2 |Cq| (ω h)²` of it
+        let off = 2.0 * self.scheme.error_constant().abs() * ANSWER;
+        TAU * (off / self.options.force_tolerance).sqrt()
     }
 
     fn set_horizon(&mut self, horizon: f64) {

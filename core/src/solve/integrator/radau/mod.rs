@@ -212,6 +212,11 @@ impl Integrator for Radau {
         self.horizon
     }
 
+    fn per_period(&self) -> f64 {
+        // what it errs by in a step of the longest that motions allow is far below any tolerance of forces
+        0.0
+    }
+
     fn set_horizon(&mut self, horizon: f64) {
         self.horizon = horizon;
     }
