@@ -150,10 +150,10 @@ impl Motion for Course {
             }
         })
     }
-    fn period(&self, _t: f64) -> f64 {
-        match self.source {
-            Source::Waves { periods: [_, mean], .. } => mean,
-            Source::Table { .. } => f64::INFINITY,
+    fn period(&self, t: f64) -> f64 {
+        match &self.source {
+            Source::Waves { periods: [_, mean], .. } => *mean,
+            Source::Table { knots, .. } => knots.iter().map(|knots| knots.period(t)).fold(f64::INFINITY, f64::min),
         }
     }
 }

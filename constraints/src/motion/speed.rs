@@ -50,6 +50,9 @@ impl Motion for SpeedTable {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         Some(self.knots.reach(t, h))
     }
+    fn period(&self, t: f64) -> f64 {
+        self.knots.period(t)
+    }
     fn range(&self) -> (f64, f64) {
         let t = self.speed.times();
         (t[0], t[t.len() - 1])

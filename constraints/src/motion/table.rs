@@ -93,6 +93,9 @@ impl Motion for Table {
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
         Some(self.knots.reach(t, h))
     }
+    fn period(&self, t: f64) -> f64 {
+        self.knots.period(t)
+    }
     fn range(&self) -> (f64, f64) {
         let t = self.along[0].times();
         (t[0], t[t.len() - 1])

@@ -10,8 +10,9 @@ use crate::model::term::Term;
 use crate::solve::integrator::{Limit, StepError, restart};
 use std::sync::Arc;
 
-/// What would be left of the way to a kink after a whole step, in parts of the step, that is shared out between the two.
-const SLIVER: f64 = 0.2;
+/// How many whole steps away a kink may be for the way to it to be shared out evenly: long and short steps in turn, as between the
+/// rows of a table, make generalized-alpha swing ever wilder.
+const SHARED: u32 = 3;
 /// How much of a motion or a load is looked through for what fixed steps don't follow.
 const MOST_PIECES: usize = 100_000;
 
@@ -46,8 +47,17 @@ impl Simulation {
         if reach < wish {
             return reach;
         }
-        let rest = model.told(&At { t: at.t + wish, ..at }, wish);
-        if rest < SLIVER * wish && wish + rest < left { 0.5 * (wish + rest) } else { left }
+        for whole in 1..=SHARED {
+            let way = f64::from(whole) * wish;
+            let rest = model.told(&At { t: at.t + way, ..at }, wish);
+            if way + rest >= left {
+                break;
+            }
+            if rest < wish {
+                return (way + rest) / f64::from(whole + 1);
+            }
+        }
+        left
     }
 
     /// Couples what is near here, where what is coupled may soon not be all; `anyhow` without asking. The integrator goes on
