@@ -53,8 +53,16 @@ type Six = [[f64; 3]; MOTIONS];
 /// Where the six motions come from.
 enum Source {
     /// With the shortest and the mean period of the waves [s].
-    Waves { response: VesselResponse, periods: [f64; 2] },
-    Table { curves: Vec<Interpolation>, knots: Vec<Knots>, range: (f64, f64), ramp: f64 },
+    Waves {
+        response: VesselResponse,
+        periods: [f64; 2],
+    },
+    Table {
+        curves: Vec<Interpolation>,
+        knots: Vec<Knots>,
+        range: (f64, f64),
+        ramp: f64,
+    },
 }
 
 impl Source {
@@ -153,7 +161,9 @@ impl Motion for Course {
     fn period(&self, t: f64) -> f64 {
         match &self.source {
             Source::Waves { periods: [_, mean], .. } => *mean,
-            Source::Table { knots, .. } => knots.iter().map(|knots| knots.period(t)).fold(f64::INFINITY, f64::min),
+            Source::Table { knots, .. } => {
+                knots.iter().map(|knots| knots.period(t)).fold(f64::INFINITY, f64::min)
+            }
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::run::{Counts, CriticalLoad, Ending, ProfileEntry, Recorder, Started, Status, Summary};
+use ropewalk_core::integrator::Limit;
 use ropewalk_core::{Audit, Model, Simulation, State, V3};
 use ropewalk_models::scenes;
 use ropewalk_report::{Elapsed, Progress, Stopwatch, Table, Watch};
@@ -41,6 +42,8 @@ pub struct History {
     pub warnings: Vec<String>,
     /// How it ended.
     pub(crate) ending: Ending,
+    /// How many steps were limited by what, in the order of [`Limit::ALL`].
+    pub(crate) limits: [u64; Limit::ALL.len()],
     /// Where the time went, if that was asked for; it adds up to the CPU time.
     pub(crate) profile: Vec<ProfileEntry>,
     /// Positions of all nodes at some rows, if they were asked for …
@@ -84,6 +87,7 @@ impl History {
             ..Summary::default()
         };
         summary.set_finals(&self.table);
+        summary.set_limits(&self.limits);
         summary
     }
     /// The last value of a column.
@@ -183,6 +187,7 @@ pub(crate) fn compute(scene: &Scene, how: How) -> Result<History, Error> {
             entry.seconds = entry.share * elapsed.cpu_or_wall_s();
         }
     }
+    let limits = started.limits();
     let done = started.done();
     Ok(History {
         table: recorder.table,
@@ -195,6 +200,7 @@ pub(crate) fn compute(scene: &Scene, how: How) -> Result<History, Error> {
         stopped_by: ending.stopped_by(),
         warnings: recorder.warnings.all,
         ending,
+        limits,
         profile,
         positions: recorder.track.unwrap_or_default(),
         length,

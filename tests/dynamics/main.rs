@@ -29,5 +29,6 @@ mod radau;
 mod running;
 mod scales;
 mod singular;
+mod swings;
 mod tolerance;
 mod torsion_springs;

@@ -139,7 +139,7 @@ fn tow() -> String {
 }
 
 /// An umbilical of 10 km in a current, heaved by 2 m.
-fn umbilical() -> String {
+pub(crate) fn umbilical() -> String {
     format!(
         r#"
         [water]

@@ -10,19 +10,17 @@ use crate::model::term::Term;
 use crate::solve::integrator::{Limit, StepError, restart};
 use std::sync::Arc;
 
-/// How many whole steps away a kink may be for the way to it to be shared out evenly: long and short steps in turn, as between the
-/// rows of a table, make generalized-alpha swing ever wilder.
+/// After how many whole steps the rest of a way may end for all of it to be shared out evenly: long and short steps in turn, as
+/// between the rows of a table, make generalized-alpha swing ever wilder, and tensions that are read after a short one ring.
 const SHARED: u32 = 3;
 /// How much of a motion or a load is looked through for what fixed steps don't follow.
 const MOST_PIECES: usize = 100_000;
 
 impl Simulation {
-    /// The longest step from here that leaps over nothing and follows what swings, where `whole` is left, to the end or not; and
-    /// what bounds it. What is left for the last two steps is shared out between them: a tension that is read at the end would
-    /// ring after a step much shorter than those before it.
-    pub(super) fn limit(&self, whole: f64, to_end: bool) -> (f64, Limit) {
+    /// The longest step from here that leaps over nothing and follows what swings, where `whole` is left; and what bounds it.
+    pub(super) fn limit(&self, whole: f64) -> (f64, Limit) {
         let swing = self.model.period(&self.state.at()) / self.integrator.per_period();
-        let left = self.leaps_nothing(whole, to_end, swing.min(self.integrator.limits().most));
+        let left = self.leaps_nothing(whole, swing.min(self.integrator.limits().most));
         match left {
             _ if swing < left => (swing, Limit::Period),
             _ if left >= whole => (left, Limit::Instant),
@@ -30,13 +28,13 @@ impl Simulation {
         }
     }
 
-    /// The longest step that leaps over nothing, where those that are left are at most so long.
-    fn leaps_nothing(&self, whole: f64, to_end: bool, most: f64) -> f64 {
+    /// The longest step that leaps over nothing, where steps are at most so long. The way to what it must not leap over is
+    /// shared out evenly.
+    fn leaps_nothing(&self, whole: f64, most: f64) -> f64 {
         let (model, at, control) = (&self.model, self.state.at(), &self.state.control);
         let wish = if control.h_next > 0.0 { control.h_next } else { control.h_start };
         let wish = wish.min(most);
-        let two = to_end && wish < whole && whole < 2.0 * wish;
-        let left = if two { 0.5 * whole } else { whole }.min(model.step_limit(&at));
+        let left = shared(whole, wish).min(model.step_limit(&at));
         if !model.is_timed() {
             return left;
         }
@@ -47,17 +45,11 @@ impl Simulation {
         if reach < wish {
             return reach;
         }
-        for whole in 1..=SHARED {
-            let way = f64::from(whole) * wish;
-            let rest = model.told(&At { t: at.t + way, ..at }, wish);
-            if way + rest >= left {
-                break;
-            }
-            if rest < wish {
-                return (way + rest) / f64::from(whole + 1);
-            }
-        }
-        left
+        let kink = (1..=SHARED).map(f64::from).find_map(|steps| {
+            let rest = model.told(&At { t: at.t + steps * wish, ..at }, wish);
+            (rest < wish).then_some(steps * wish + rest)
+        });
+        kink.filter(|kink| *kink < left).map_or(left, |kink| shared(kink, wish))
     }
 
     /// Couples what is near here, where what is coupled may soon not be all; `anyhow` without asking. The integrator goes on
@@ -102,6 +94,13 @@ impl Simulation {
         });
         terms.chain(constraints).flatten().collect()
     }
+}
+
+/// The length of the next step on a way that is gone in steps of at most `wish`.
+fn shared(way: f64, wish: f64) -> f64 {
+    // but for rounding
+    let steps = (way / wish * (1.0 - 1e-9)).ceil();
+    if steps <= f64::from(SHARED + 1) { way / steps } else { way }
 }
 
 /// When two changes first come within a step `h`.

@@ -302,10 +302,12 @@ impl Simulation {
             let (left, bound) = match self.integrator.options().stepping {
                 Stepping::Controlled { .. } => {
                     self.leap()?;
-                    self.limit(whole, target == end)
+                    self.limit(whole)
                 }
                 // a step that differs by rounding would need factors of its own
-                Stepping::Fixed { h } if (whole - h).abs() <= 8.0 * f64::EPSILON * target.abs() => (h, Limit::Instant),
+                Stepping::Fixed { h } if (whole - h).abs() <= 8.0 * f64::EPSILON * target.abs() => {
+                    (h, Limit::Instant)
+                }
                 Stepping::Fixed { .. } => (whole, Limit::Instant),
             };
             self.model.relabel(&mut self.state);
