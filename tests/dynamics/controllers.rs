@@ -265,14 +265,21 @@ fn steps_get_over_the_kinks_of_a_winch_that_is_controlled() {
         let mut s = started(&scene(&text(tolerance)));
         s.advance(3.0, 1.0, &mut ()).unwrap_or_else(|e| panic!("{e}"));
         let counts = s.work.counts;
+        let last = s.model.nodes().iter().rfind(|n| n.kind.has_position()).expect("the load's node");
         println!("tolerance {tolerance:e}: {counts:?}, imbalance {:e} J", s.audit.imbalance());
-        (counts.steps + counts.rejected, s.audit.imbalance().abs())
+        (counts.steps + counts.rejected, s.audit.imbalance().abs(), s.state.q[last.q + 2])
     };
     // thirty kinks, each of which takes shorter steps, and no collapse: tens of thousands of them once
-    for (tolerance, most, lost) in [(1e-4, 100, 2.0), (1e-5, 400, 0.8), (1e-6, 600, 0.2), (1e-8, 8000, 0.02)]
+    let [loose, fine, finer, exact] = [1e-4, 1e-5, 1e-6, 1e-8].map(run);
+    for ((tries, imbalance, _), most, lost) in
+        [(loose, 100, 2.0), (fine, 400, 2.0), (finer, 600, 0.2), (exact, 8000, 0.02)]
     {
-        let (tries, imbalance) = run(tolerance);
         assert!(tries < most, "{tries}");
         assert!(imbalance < lost, "{imbalance} J");
+    }
+    for ((.., z), tolerance) in [(loose, 1e-4), (fine, 1e-5), (finer, 1e-6)] {
+        let off = (z - exact.2).abs() / 8.0 / tolerance;
+        println!("{off:.2} tolerances");
+        assert!(off < 3.0, "the load is off by {off} tolerances at {tolerance:e}");
     }
 }

@@ -6,9 +6,14 @@ use ropewalk::core::integrator::StepReport;
 use ropewalk::core::{Model, Observer, State};
 use ropewalk::scene::Format;
 use ropewalk::{History, SceneFile, Watch, simulate, start};
+use ropewalk_core::BuildError;
+use ropewalk_scene::functions::{
+    Displaced, Function, Parameters, Reads, Trouble, Written, register_function,
+};
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 const HEAVE: &str = r#"type = "harmonic"
         name = "heave"
@@ -66,15 +71,19 @@ fn an_umbilical_that_heaves_swings_as_it_should() {
     }
 }
 
+/// How far the heave has risen.
+fn risen(t: f64) -> f64 {
+    let u = (t / RAMP).min(1.0);
+    u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)
+}
+
 /// The same heave as a table with four rows a second.
 fn table(join: &str) -> String {
     let (mut times, mut heights) = (String::new(), String::new());
     for k in 0..=240 {
         let t = 0.25 * f64::from(k);
-        let u = (t / RAMP).min(1.0);
-        let rise = u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
         write!(times, "{t}, ").expect("a string");
-        write!(heights, "{:.9}, ", 2.0 * rise * (TAU * 0.1 * t).sin()).expect("a string");
+        write!(heights, "{:.9}, ", 2.0 * risen(t) * (TAU * 0.1 * t).sin()).expect("a string");
     }
     format!("type = \"table\"\nname = \"heave\"\njoin = \"{join}\"\nt = [{times}]\nz = [{heights}]\n")
 }
@@ -89,6 +98,34 @@ fn the_same_heave_from_a_table_swings_alike() {
         println!("{solver}: {off:.2e} of the swing");
         assert!(off < most, "{solver}: off by {off:e} of the swing");
     }
+}
+
+/// The same heave as a program writes it, which knows nothing but where it is.
+#[derive(Clone, Debug)]
+struct Heave;
+
+impl Function for Heave {
+    fn reads(&self) -> Reads {
+        Reads::default()
+    }
+    fn motion(&self, t: f64) -> Result<Displaced, Trouble> {
+        Ok(([0.0, 0.0, 2.0 * risen(t) * (TAU * 0.1 * t).sin()], [None; 2]))
+    }
+}
+
+impl Written for Heave {
+    fn bind(&self, _: &Parameters) -> Result<Arc<dyn Function>, BuildError> {
+        Ok(Arc::new(self.clone()))
+    }
+}
+
+#[test]
+fn the_same_heave_from_a_function_swings_alike() {
+    register_function("heaves", Arc::new(Heave));
+    let heave = "type = \"function\"\nname = \"heave\"\nfunction = \"heaves\"\n";
+    let off = apart(&tension(heave, ""), &exact(HEAVE));
+    println!("{off:.2e} of the swing");
+    assert!(off < 1e-2, "off by {off:e} of the swing");
 }
 
 /// Between rows 0.25 s apart, at which the acceleration jumps, steps of 0.1 s went 0.1, 0.025, 0.1, 0.025 s: tensions swung by five

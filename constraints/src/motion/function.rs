@@ -1,5 +1,6 @@
 //! Motions that a function gives which a program has written.
 
+use ropewalk_core::reach::Knots;
 use ropewalk_core::{BuildError, Motion, Moving, V3, broken};
 use ropewalk_scene::functions::{Called, Parameters};
 use ropewalk_scene::{Inputs, MotionSpec, register_spec};
@@ -12,6 +13,8 @@ const LOOKS: usize = 24;
 /// Steps that are tried: from this part of the run, each a third of the one before.
 const LARGEST: f64 = 0.03;
 const STEPS: i32 = 13;
+/// Instants at which it is looked at for how it goes to and fro.
+const ROWS: u32 = 4096;
 
 /// A displacement that a function gives. What it doesn't know of velocity and acceleration are differences.
 #[derive(Clone, Debug)]
@@ -19,6 +22,8 @@ pub struct FunctionMotion {
     function: Called,
     /// Step of the differences [s].
     step: f64,
+    /// How it goes to and fro in the run.
+    looked: Knots,
 }
 
 /// Values about an instant as a quartic of the time over the step: its coefficients.
@@ -90,9 +95,11 @@ impl FunctionMotion {
             [Some(_), None] => best_step(|t| function.motion(t).1[0].unwrap_or([f64::NAN; 3]), duration),
             _ => best_step(|t| function.motion(t).0, duration),
         };
+        let rows: Vec<f64> = (0..=ROWS).map(|k| duration * f64::from(k) / f64::from(ROWS)).collect();
+        let looked = Knots::at_rows(&rows, |t| function.motion(t).0);
         // what fails when it is wanted is told then
         let _ = broken::take();
-        Ok(FunctionMotion { function, step })
+        Ok(FunctionMotion { function, step, looked })
     }
 }
 
@@ -110,6 +117,9 @@ impl Motion for FunctionMotion {
                 Moving { x, v, a }
             }
         }
+    }
+    fn period(&self, t: f64) -> f64 {
+        self.looked.period(t)
     }
 }
 

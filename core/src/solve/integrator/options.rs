@@ -96,7 +96,8 @@ pub struct Options {
     pub newton: NewtonPolicy,
     /// Form of the constraint equations. Radau IIA always satisfies positions and velocities.
     pub constraints: ConstraintForm,
-    /// Error of tensions and reactions, relative to the largest in the same part.
+    /// Error of tensions and reactions, relative to the largest in the same part; of what goes to and fro with a period of a
+    /// motion, a load or waves also relative to its swing.
     pub force_tolerance: f64,
     /// Accept a scheme that is unstable for constrained systems, with a warning.
     pub allow_unstable: bool,
