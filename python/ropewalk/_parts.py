@@ -3174,7 +3174,8 @@ class Parts:
         newton: When Newton's method computes a new iteration matrix. Default modified.
         constraints: Form of the constraint equations. Radau IIA always satisfies positions and velocities. Default
             positions.
-        force_tolerance: Error of tensions and reactions, relative to the largest in the same part. Default 0.01.
+        force_tolerance: Error of tensions and reactions, relative to the largest in the same part; of what goes to
+            and fro with a period of a motion, a load or waves also relative to its swing. Default 0.01.
         allow_unstable: Accept a scheme that is unstable for constrained systems, with a warning. Default False.
         h_max: Largest step [s]. Default: a twentieth of the run.
         h_min: Smallest step [s]; a run that needs a smaller one ends with an error. Default: 1e-12 of the run.

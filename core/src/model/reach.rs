@@ -163,12 +163,12 @@ fn half_waves(times: &[f64], value: impl Fn(usize) -> f64, least: f64) -> Vec<[f
         let back = value(k) - value(far);
         let goes_on = up.is_some_and(|up| back == 0.0 || (back > 0.0) == up);
         let turns = !goes_on && back.abs() > least;
-        if turns && up.is_some() {
-            if let Some(begin) = turned.replace(far)
-                && far - begin >= SMOOTH
-            {
-                waves.push([times[begin], times[far]]);
-            }
+        if turns
+            && up.is_some()
+            && let Some(begin) = turned.replace(far)
+            && far - begin >= SMOOTH
+        {
+            waves.push([times[begin], times[far]]);
         }
         if turns {
             up = Some(back > 0.0);
