@@ -205,7 +205,7 @@ impl TimeFunction {
     /// The period with which it goes to and fro [s], infinite if it doesn't.
     pub fn period(&self) -> f64 {
         match self {
-            TimeFunction::Harmonic { frequency, .. } => 1.0 / frequency,
+            TimeFunction::Harmonic { amplitude, frequency, .. } if *amplitude != 0.0 => 1.0 / frequency.abs(),
             _ => f64::INFINITY,
         }
     }

@@ -74,6 +74,6 @@ impl Motion for Harmonic {
         Some(reach::after(self.start, t, rise, swing))
     }
     fn period(&self, _t: f64) -> f64 {
-        1.0 / self.frequency
+        if self.amplitude == [0.0; 3] { f64::INFINITY } else { 1.0 / self.frequency }
     }
 }

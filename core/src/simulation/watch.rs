@@ -166,7 +166,7 @@ impl Simulation {
                     self.integrator.horizon()
                 ),
             ],
-            Limit::Force => vec!["a looser `force_tolerance`".into()],
+            Limit::Force | Limit::Period => vec!["a looser `force_tolerance`".into()],
             Limit::Longest => vec!["a longer `h_max`".into()],
             _ => vec!["a looser `tolerance`".into()],
         };

@@ -18,6 +18,8 @@ pub use swell::Swell;
 /// place and time alone.
 pub struct Sea {
     waves: Waves,
+    /// The shortest and the mean period of those [s].
+    periods: [f64; 2],
     /// Height of the surface without waves [m].
     level: f64,
     about: String,
@@ -58,7 +60,8 @@ impl Sea {
             },
             spec.depth.map_or_else(|| "that is deep".into(), |h| format!("{h} m deep")),
         );
-        Ok(Sea { waves, level, about, lattice, alive: Arc::new(()) })
+        let periods = [TAU / waves.fastest(), waves.period()];
+        Ok(Sea { waves, periods, level, about, lattice, alive: Arc::new(()) })
     }
 
     /// The table that stands for many waves, if there is to be one, and how the sum is found in words.
@@ -115,12 +118,12 @@ impl Sea {
 
     /// How much of a step `h` [s] may be taken that follows the shortest of its waves.
     pub fn reach(&self, h: f64) -> f64 {
-        reach::period(TAU / self.waves.fastest(), h)
+        reach::period(self.periods[0], h)
     }
 
     /// The period of its waves [s]: of many the mean time between those that rise through the still level.
     pub fn period(&self) -> f64 {
-        self.waves.period()
+        self.periods[1]
     }
 
     /// The motion of the water at time `t` [s] at places.
