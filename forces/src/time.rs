@@ -197,7 +197,7 @@ impl TimeFunction {
             TimeFunction::Triangle { t0, peak, t1 } => {
                 reach::knots(&[*t0, *peak, *t1], |k| [[0.0, 1.0, 0.0][k], 0.0, 0.0], 1.0, t, h)
             }
-            TimeFunction::Harmonic { frequency, .. } => reach::period(1.0 / frequency, h),
+            TimeFunction::Harmonic { .. } => reach::period(self.period(), h),
             TimeFunction::Input(input) => input.signal.as_ref().map_or(h, |s| s.reach(t, h)),
         }
     }

@@ -469,7 +469,8 @@ fn a_tolerance_of_forces_that_steps_are_not_held_to_is_said_to_be_one_of_iterati
     assert!(said(&links, &asked) && said(&links, &radau) && said(&cable, &radau));
     assert!(!said(&links, &usual) && !said(&cable, &asked) && !said(&cable, SCHEMES[1]));
     // what follows that of positions is as exact as asked if this is tight enough, and isn't at 1e-3
-    assert!(said(&links, &controlled(1e-3)) && !said(&cable, &controlled(1e-3)));
+    let loose = SCHEMES.map(|scheme| scheme.to_string() + &controlled(1e-3));
+    assert!(loose.iter().all(|solver| said(&links, solver) && !said(&cable, solver)));
     assert!(!said(&links, &("force_tolerance = 1e-3\n".to_string() + &controlled(1e-5))));
 }
 

@@ -66,7 +66,7 @@ impl Motion for Harmonic {
         }
     }
     fn reach(&self, t: f64, h: f64) -> Option<f64> {
-        let swing = reach::period(1.0 / self.frequency, h);
+        let swing = reach::period(self.period(t), h);
         if self.ramp == 0.0 {
             return Some(swing);
         }
