@@ -13,7 +13,7 @@ use ropewalk_scene::{Builder, ConstraintSpec, MarkerRef, RaoSpec, register_spec}
 use ropewalk_sea::{MOTIONS, VesselResponse};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -209,7 +209,7 @@ impl VesselSpec {
                 })?;
                 let waves = sea.waves();
                 let response = VesselResponse::new(waves, &responses, [place[0], place[1]], self.heading);
-                Ok(Source::Waves { response, periods: [TAU / waves.fastest(), waves.period()] })
+                Ok(Source::Waves { response, periods: sea.periods() })
             }
             (None, Some(file)) => {
                 let ramp = not_negative("ramp", self.ramp)?;

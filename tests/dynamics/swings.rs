@@ -197,6 +197,13 @@ fn every_period_has_its_steps() {
                 "t",
             ),
         ),
+        (
+            "internal flow",
+            force(
+                "internal_flow",
+                &format!("cable = \"c\"\ndensity = 1000\nbore = 0.02\nspeed = 0.1\n{time}"),
+            ),
+        ),
         ("drag in waves", format!("{sea}{}", force("drag", ""))),
         ("added mass in waves", format!("{sea}{}", force("added_mass", ""))),
         ("buoyancy in waves", format!("{sea}{}", force("buoyancy", ""))),

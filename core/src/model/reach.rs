@@ -13,11 +13,12 @@ const PER_RISE: f64 = 8.0;
 /// By how much, in parts of the whole range of its values, a table may stray within a step from the straight line between
 /// the ends of the step: kinks that are leapt over strike what is driven, at 2 % with a tension larger than all of its swing.
 const STRAY: f64 = 0.005;
-/// From which part of the whole range on values that turn round go to and fro, and how many knots a smooth half wave has.
-const TURNS: f64 = 0.1;
-const SMOOTH: usize = 6;
 /// The same for functions that only show their values, and at the quarter points of the step.
 const STRAY_SHOWN: f64 = 0.03;
+/// From which part of the whole range on values that turn round go to and fro …
+const TURNS: f64 = 0.1;
+/// … and how many knots a half wave has at least to be smooth.
+const SMOOTH: usize = 6;
 /// How often a step is halved at most since a function looks rough.
 const HALVINGS: u32 = 6;
 /// Instants that are nearer to each other than this many units in the last place are the same.

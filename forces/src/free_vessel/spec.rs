@@ -7,7 +7,6 @@ use ropewalk_scene::{Builder, ForceSpec, MarkerRef, RaoSpec, quantity, register_
 use ropewalk_sea::{MOTIONS, VesselResponse};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// A rigid body floats as a vessel or a buoy, by 6 x 6 matrices of stiffness, added mass and damping about its reference point, and loads
@@ -163,9 +162,7 @@ impl FreeVesselSpec {
             let message = "these are loads of waves, and the scene has none: add [water.waves]";
             BuildError::at("loads", message)
         })?;
-        let waves = sea.waves();
-        let periods = [TAU / waves.fastest(), waves.period()];
-        Ok(Some((VesselResponse::new(waves, &responses, place, self.heading), periods)))
+        Ok(Some((VesselResponse::new(sea.waves(), &responses, place, self.heading), sea.periods())))
     }
 }
 

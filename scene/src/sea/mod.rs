@@ -121,6 +121,11 @@ impl Sea {
         reach::period(self.periods[0], h)
     }
 
+    /// The shortest and the mean period of its waves [s].
+    pub fn periods(&self) -> [f64; 2] {
+        self.periods
+    }
+
     /// The period of its waves [s]: of many the mean time between those that rise through the still level.
     pub fn period(&self) -> f64 {
         self.periods[1]

@@ -146,11 +146,11 @@ pub trait Integrator: Send {
     /// Time over which the errors of steps may add up [s].
     fn horizon(&self) -> f64;
 
-    /// Steps that each period of what swings takes, so that the tensions which answer to it are right to the tolerance of forces.
-    fn per_period(&self) -> f64;
-
     /// Sets that time [s].
     fn set_horizon(&mut self, horizon: f64);
+
+    /// Steps that each period of what swings takes, so that the tensions which answer to it are right to the tolerance of forces.
+    fn per_period(&self) -> f64;
 
     /// What the user should know although the run goes on.
     fn warning(&self) -> Option<&str> {
